@@ -111,6 +111,8 @@ class Trajectory:
     @cached_property
     def after_blows(self) -> dict[int, Array]:
         """The records from which the steps after blows start."""
+        if not self.blows:
+            return {}
         at = {int(np.searchsorted(self.ends, blow.time, side="right")) for blow in self.blows}
         own = np.isin(self.kept.steps, list(at))
         return dict(zip(self.kept.steps[own].tolist(), self.kept.records[own], strict=True))

@@ -79,4 +79,6 @@ def _least_gyration(mechanism: Mechanism, size: float) -> float:
 
 
 def _largest(values: Array) -> float:
-    return float(np.nanmax(np.abs(values), initial=0.0))
+    """The largest magnitude; what is open has none."""
+    found = float(np.abs(values).max(initial=0.0))
+    return found if found == found else float(np.nanmax(np.abs(values), initial=0.0))

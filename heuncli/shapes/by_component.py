@@ -14,17 +14,19 @@ from heuncli.results import Array
 
 def rows(values: Array) -> Array:
     """Values (n_t, ...) with the instants last and next to each other, (..., n_t)."""
-    return np.ascontiguousarray(np.moveaxis(values, 0, -1))
+    return np.ascontiguousarray(values.transpose(*range(1, values.ndim), 0))
 
 
 def instants_first(values: Array) -> Array:
     """Values (..., n_t) as they are elsewhere, (n_t, ...)."""
-    return np.ascontiguousarray(np.moveaxis(values, -1, 0))
+    last = values.ndim - 1
+    return np.ascontiguousarray(values.transpose(last, *range(last)))
 
 
 def body_by_body(values: Array) -> Array:
     """Values (n, ..., n_t) as (n_t, n, ...), in memory one body behind the other."""
-    return np.ascontiguousarray(np.moveaxis(values, -1, 1)).swapaxes(0, 1)
+    last = values.ndim - 1
+    return np.ascontiguousarray(values.transpose(0, last, *range(1, last))).swapaxes(0, 1)
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -261,9 +261,11 @@ def recovered_at(
     runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float], *, causes: bool = False
 ) -> Recovered:
     """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
-    before, after = limits_of(jumps)
-    next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
-    later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times) if len(after) else times
+    later = times
+    if len(jumps):
+        before, after = limits_of(jumps)
+        next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
+        later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times)
     branches = run.branches_at(times) if run.branches.size else None
     found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
     return replace(found, times=times)

@@ -26,17 +26,20 @@ def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
     if run.within is not None:
         return run.within(times)
     out = np.empty((len(times), run.states.shape[1]))
-    own = np.minimum(np.searchsorted(run.times, times), len(run.times) - 1)
+    own = np.minimum(run.times.searchsorted(times), len(run.times) - 1)
+    known = asked = run.times[own] == times
     for blow in run.blows:  # its own instant shows the state behind it
-        out[times == blow.time] = blow.after
-    asked = run.times[own] == times
+        struck = times == blow.time
+        out[struck], known = blow.after, known | struck
     out[asked] = run.states[own[asked]]
-    others = np.flatnonzero(~(asked | np.isin(times, [blow.time for blow in run.blows])))
-    step = np.searchsorted(run.ends, times[others])  # the step in which an instant lies
+    others = (~known).nonzero()[0]
+    step = run.ends.searchsorted(times[others])  # the step in which an instant lies
     told, states = by_its_steps(moving, run, times[others], step)
-    if told.any():
+    if len(states):
         out[others[told]] = moving.embed(times[others[told]], states)
         others, step = others[~told], step[~told]
+    if not len(others):
+        return out
     base = np.searchsorted(run.kept.steps, step, side="right") - 1
     # consecutive steps are replayed together
     breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
@@ -58,16 +61,19 @@ def by_its_steps(moving: IntegratedScene, run: Trajectory, times: Array, step: I
     told = np.zeros(len(times), dtype=bool)
     if not len(times) or not len(run.ends):
         return told, states
-    within = told if run.courses is None else run.courses.known(times, step, run.ends)
-    if run.courses is not None and within.any():
-        states[within] = run.courses.states(times[within], step[within], n)
-    next_ = np.searchsorted(run.kept.steps, step + 1)
-    next_ = np.minimum(next_, len(run.kept) - 1)
-    at_end = (times == run.ends[step]) & (run.kept.steps[next_] == step + 1)
-    if run.after_blows:  # whose records are of the states behind the blows
-        at_end &= ~np.isin(step + 1, list(run.after_blows))
-    states[at_end] = run.kept.records[next_[at_end], :n]
-    told = within | at_end
+    if run.courses is not None:
+        told = run.courses.known(times, step, run.ends)
+        if told.all():
+            return told, run.courses.states(times, step, n)
+        states[told] = run.courses.states(times[told], step[told], n)
+    at_end = times == run.ends[step]
+    if at_end.any():
+        next_ = np.minimum(run.kept.steps.searchsorted(step + 1), len(run.kept) - 1)
+        at_end &= run.kept.steps[next_] == step + 1
+        if run.after_blows:  # whose records are of the states behind the blows
+            at_end &= ~np.isin(step + 1, list(run.after_blows))
+        states[at_end] = run.kept.records[next_[at_end], :n]
+        told = told | at_end
     return told, states[told]
 
 

@@ -286,7 +286,10 @@ def sides_of_jumps(times: Array) -> Mask:
 
 def filled(times: Array) -> Array:
     """The instants, and more of them in stretches between two jumps that have too few to show how they bend."""
-    stretch = np.append(0, np.cumsum(sides_of_jumps(times)))
+    jumps = sides_of_jumps(times)
+    if not jumps.any() and len(times) > FEW:
+        return times
+    stretch = np.append(0, np.cumsum(jumps))
     few = (np.diff(stretch) == 0) & (np.bincount(stretch)[stretch[1:]] < FEW)
     more = times[:-1][few, None] + np.diff(times)[few, None] * (np.arange(1, FEW) / FEW)
     return np.asarray(distinct(np.concatenate([times, more.ravel()])))
@@ -294,5 +297,8 @@ def filled(times: Array) -> Array:
 
 def distinct(values: np.ndarray[Any, Any]) -> Any:
     """The different numbers among these, ascending; np.unique would import numpy.ma for it, 10 ms."""
-    ascending = np.sort(values, axis=None)
-    return ascending[np.append(True, ascending[1:] != ascending[:-1])[: len(ascending)]]
+    ascending = values.flatten()
+    ascending.sort()
+    first = np.ones(len(ascending), dtype=bool)
+    np.not_equal(ascending[1:], ascending[:-1], out=first[1:])
+    return ascending[first]
