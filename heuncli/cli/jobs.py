@@ -28,9 +28,14 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def forks() -> bool:
+    """Whether processes can be forked here."""
+    return hasattr(os, "fork")
+
+
 def how_many(asked: int | None, things: int) -> int:
     """How many processes work: as many as asked for, else one a processor where there is enough to do."""
-    if not hasattr(os, "fork"):
+    if not forks():
         return 1
     most = asked if asked is not None else processors() if things >= WORTH else 1
     return max(1, min(most, things))

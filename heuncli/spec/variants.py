@@ -11,7 +11,7 @@ Impure: reads the spec's file and those of its tables, when it is made; a table 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, cast
@@ -67,6 +67,21 @@ class SpecVariants:
         except SpecError:
             begin_file()
             return Loading(first.path, first.source, given, first.checking, first.case).spec()
+
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names which no entry and no table looks up, nor another parameter that one does.
+
+        What is expected of the results does not count.
+        """
+        first = self._first
+        read = [kept.lookups for path, kept in first.entries.items() if path[:1] != ("expect",)]
+        read += [kept.lookups for kept in first.built.values()]
+        used: set[object] = set()
+        waiting: set[object] = {lookup.key for lookups in read for lookup in lookups if lookup.of == "parameters"}
+        while waiting:
+            used |= waiting
+            waiting = {name for one in waiting for name in first.known.uses.get(str(one), ())} - used
+        return frozenset(name for name in names if name in first.known.uses and name not in used)
 
 
 class KeptEntry(NamedTuple):

@@ -20,7 +20,7 @@ class SweepRequest(NamedTuple):
             "SPEC NAME=VALUES...",
             completes="spec",
         ),
-    ]
+    ] = ()
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -31,6 +31,28 @@ class SweepRequest(NamedTuple):
         ),
     ] = ()
     zip: Annotated[bool, Option(("--zip",), "The values of one place together, not all combinations.")] = False
+    variants: Annotated[
+        str | None,
+        Option(("--variants",), "A CSV table of variants: a column a parameter, a row a variant.", "FILE"),
+    ] = None
+    store: Annotated[
+        str | None,
+        Option(("--store",), "Keep every row there as it is done; what is there already is not solved again.", "FILE"),
+    ] = None
+    show: Annotated[
+        str | None,
+        Option(("--show",), "Print the last sweep of a store, or the one of that number; solves nothing.", "FILE[:N]"),
+    ] = None
+    shard: Annotated[
+        str | None,
+        Option(("--shard",), "One part of so many, such as 2/8: every eighth variant, from the second on.", "K/N"),
+    ] = None
+    jobs: Annotated[
+        int | None, Option(("--jobs", "-j"), "Processes. Default: one a processor, from eight variants on.", "N")
+    ] = None
+    time_limit_each: Annotated[
+        float | None, Option(("--time-limit",), "Give up on a variant after that long; the others go on.", "SECONDS")
+    ] = None
     format: Annotated[
         str | None,
         Option(
