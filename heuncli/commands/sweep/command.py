@@ -7,12 +7,13 @@ from collections.abc import Iterator, Sequence
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, positive, tolerance
 from heuncli.cli.target import format_of
+from heuncli.cli.units import say_what_stays, units
+from heuncli.commands.sweep.drawn import drawn
 from heuncli.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.commands.sweep.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.commands.sweep.told import FORMS
+from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable, tell
 from heuncli.errors import Problem
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
@@ -22,21 +23,23 @@ from heuncli.variants.plans import Plan, plan_of
 from heuncli.variants.stated import unit_of
 from heuncli.version import VERSION
 
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
-
 
 def main(request: SweepRequest) -> int:
     """Run the command; returns the exit code."""
     path, words = spec_and_axes(request.words)
     require_other_file(request.output, [path])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    how = Telling(
+        format_of(request.format, request.output, ENDINGS, FORMATS), request.output, units(request.units), request.all
+    )
+    require_tellable(how)
     recipe = recipe_of(request, path)
     asker = Asker(recipe)
     measure.check(recipe.measures, asker.spec)
     plan = _plan(request, words, asker)
     head = head_of(request, asker, plan)
     rows = list(answered(asker, plan))
-    emit(FORMS[form](head, rows), request.output)
+    tell(head, rows, how)
+    say_what_stays(request.units, how.form, request.quiet)
     return 1 if request.strict and any(row.answer.code for row in rows) else 0
 
 
@@ -73,7 +76,7 @@ def _plan(request: SweepRequest, words: Sequence[str], asker: Asker) -> Plan:
     own = [axis for axis in axes if not isinstance(axis, Drawn)]
     if varies_cases(asker.spec):
         own = [_cases(axis, asker) if axis.name == CASE else axis for axis in own]
-    return plan_of(own, together=request.zip)
+    return plan_of(own, together=request.zip, draws=drawn([one for one in axes if isinstance(one, Drawn)], request))
 
 
 def _cases(axis: ParameterAxis, asker: Asker) -> ParameterAxis:
