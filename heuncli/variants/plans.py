@@ -16,14 +16,15 @@ MOST_VARIANTS = 10_000_000
 
 
 class Draws(NamedTuple):
-    """Random parameters together: their laws, and the points drawn in the unit cube, (samples, parameters).
+    """Random parameters together: their laws, and what is drawn of them in their units, (variants, parameters).
 
-    seed: of the generator, by which the same are drawn again.
+    seed: by which the same are drawn again; each: so many variants in a row are of one sample (draws.py).
     """
 
     laws: tuple[Drawn, ...]
     values: Array
     seed: int
+    each: int = 1
 
 
 class Plan(NamedTuple):

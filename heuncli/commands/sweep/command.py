@@ -11,14 +11,18 @@ from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
 from heuncli.cli.solving import overrides, positive, tolerance
 from heuncli.cli.target import format_of, require_room
+from heuncli.cli.units import units
 from heuncli.commands.sweep.checks import problems_of, warnings_of
+from heuncli.commands.sweep.drawn import drawn
 from heuncli.commands.sweep.given import GivenAxis, of_word
 from heuncli.commands.sweep.request import FORMATS, SweepRequest
 from heuncli.commands.sweep.rows import SweepHead, SweptMeasure
 from heuncli.commands.sweep.running import Sweep, run
+from heuncli.commands.sweep.shards import shard_of
 from heuncli.commands.sweep.showing import show
 from heuncli.commands.sweep.store import Store
 from heuncli.commands.sweep.table import axes_in
+from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
 from heuncli.errors import Problem, SpecError
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
@@ -30,15 +34,14 @@ from heuncli.variants.plans import Plan, plan_of
 from heuncli.variants.stated import unit_of
 from heuncli.version import VERSION
 
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 USAGE = "heun sweep SPEC NAME=VALUES --measure WHAT"
 
 
 def main(request: SweepRequest) -> int:
     """Run the command; returns the exit code."""
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    how = telling_of(request)
     if request.show is not None:
-        return show(request, form)
+        return show(request, how)
     path, words = spec_and_axes(request.words)
     shard = shard_of(request.shard)
     _require_files(request, path)
@@ -55,7 +58,15 @@ def main(request: SweepRequest) -> int:
         say(f"warning: {line}")
     keys = VariantKeys(asker.recipe, varies_cases(asker.spec))
     with Store(request.store) as store:
-        return run(Sweep(asker, head_of(request, asker, plan), keys, store, shard), request, form)
+        return run(Sweep(asker, head_of(request, asker, plan), keys, store, shard), request, how)
+
+
+def telling_of(request: SweepRequest) -> Telling:
+    """How the sweep is told. Raises UsageError, SpecError."""
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    how = Telling(form, request.output, units(request.units), request.all)
+    require_tellable(how)
+    return how
 
 
 def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
@@ -65,20 +76,6 @@ def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
         found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
         raise UsageError(Problem("bad-option", f"sweep: {found}", hint=USAGE))
     return files[0], [word for word in words if "=" in word]
-
-
-def shard_of(word: str | None) -> tuple[int, int]:
-    """Which part of how many. Raises UsageError."""
-    if word is None:
-        return 1, 1
-    k, slash, n = word.partition("/")
-    numbers = [int(text) for text in (k, n) if text.isascii() and text.isdecimal() and len(text) < 10]
-    if not slash or len(numbers) < 2 or not 1 <= numbers[0] <= numbers[1]:
-        message = f"--shard {word}: expected K/N, the K-th part of N"
-        raise UsageError(
-            Problem("bad-option", message, hint="such as --shard 2/8; the first part is 1/8, the last 8/8")
-        )
-    return numbers[0], numbers[1]
 
 
 def recipe_of(request: SweepRequest, path: str) -> Recipe:
@@ -113,7 +110,8 @@ def plan_by(given: Sequence[GivenAxis], request: SweepRequest) -> Plan:
     """The variants. Raises AxisError."""
     columns = [one.axis for one in given if one.column is not None and isinstance(one.axis, ParameterAxis)]
     axes = [one.axis for one in given if one.column is None and not isinstance(one.axis, Drawn)]
-    return plan_of(axes, together=request.zip, columns=columns)
+    draws = drawn([one.axis for one in given if isinstance(one.axis, Drawn)], request)
+    return plan_of(axes, together=request.zip, draws=draws, columns=columns)
 
 
 def asker_of(recipe: Recipe, plan: Plan) -> Asker:

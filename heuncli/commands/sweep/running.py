@@ -13,14 +13,15 @@ from contextlib import closing
 from heuncli.cli import jobs
 from heuncli.cli.entry import BUG
 from heuncli.cli.leaving import Stopping
-from heuncli.cli.output import emit, say
+from heuncli.cli.output import say
 from heuncli.cli.progress import Tell, progress
+from heuncli.cli.units import say_what_stays
 from heuncli.commands.sweep.kept_heads import texts_of_head
+from heuncli.commands.sweep.noticed import Noticed, noticed_in, say_noticed
 from heuncli.commands.sweep.request import SweepRequest
 from heuncli.commands.sweep.rows import SweepHead
 from heuncli.commands.sweep.store import Store, StoredRows
-from heuncli.commands.sweep.summary import Summary, say_summary, summary_of
-from heuncli.commands.sweep.told import FORMS
+from heuncli.commands.sweep.told import Telling, tell
 from heuncli.commands.sweep.workers import answers_of
 from heuncli.errors import OutputError, SpecError
 from heuncli.named_tuples import NamedTuple
@@ -59,7 +60,7 @@ class Under(NamedTuple):
     given: tuple[str, ...]
 
 
-def run(sweep: Sweep, request: SweepRequest, form: str) -> int:
+def run(sweep: Sweep, request: SweepRequest, how: Telling) -> int:
     """Solve what is missing and tell all of it; returns the exit code."""
     number = sweep.store.sweep(sweep.head, sweep.identity())
     with Stopping() as stopping:
@@ -67,21 +68,22 @@ def run(sweep: Sweep, request: SweepRequest, form: str) -> int:
     rows = sweep.store.rows(number, sweep.head.plan.names, sweep.shard)
     if stopping.number:
         if request.store is None and done:
-            emit(FORMS[form](sweep.head, rows), request.output)
+            tell(sweep.head, rows, how)
         goes_on = "the same command goes on with the rest" if request.store is not None else "--store FILE keeps them"
         say(f"{stopping.word}: {done} of {sweep.size} variants are done; {goes_on}")
         return 128 + stopping.number
-    summary = summary_of(sweep.head, rows)
-    if len(summary.codes) == 1 and summary.failed == sweep.size:
+    noticed = noticed_in(sweep.head, rows)
+    if len(noticed.codes) == 1 and noticed.failed == sweep.size:
         _require_one(sweep, rows)
-    emit(FORMS[form](sweep.head, rows), request.output)
-    say_summary(summary, request.quiet)
-    return exit_code(summary, request.strict)
+    tell(sweep.head, rows, how)
+    say_what_stays(request.units, how.form, request.quiet)
+    say_noticed(noticed, request.quiet)
+    return exit_code(noticed, request.strict)
 
 
-def exit_code(summary: Summary, strict: bool) -> int:
+def exit_code(noticed: Noticed, strict: bool) -> int:
     """That of a sweep that was told."""
-    return BUG if "bug" in summary.codes else 1 if strict and summary.failed else 0
+    return BUG if "bug" in noticed.codes else 1 if strict and noticed.failed else 0
 
 
 def _done(sweep: Sweep, number: int, request: SweepRequest, stopping: Stopping) -> int:

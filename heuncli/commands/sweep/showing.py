@@ -7,24 +7,24 @@ from pathlib import Path
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import same_file
-from heuncli.cli.output import emit, say
+from heuncli.cli.output import say
+from heuncli.cli.units import say_what_stays
+from heuncli.commands.sweep.noticed import noticed_in, say_noticed
 from heuncli.commands.sweep.request import SweepRequest
 from heuncli.commands.sweep.running import exit_code
+from heuncli.commands.sweep.shards import shard_of
 from heuncli.commands.sweep.store import StoredSweep, opened
-from heuncli.commands.sweep.summary import say_summary, summary_of
-from heuncli.commands.sweep.told import FORMS
+from heuncli.commands.sweep.told import Telling, tell
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 
 ALONE = ("words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance")
 
 
-def show(request: SweepRequest, form: str) -> int:
+def show(request: SweepRequest, how: Telling) -> int:
     """Tell a sweep of a store; returns the exit code. Raises UsageError, OutputError."""
     assert request.show is not None
     _require_alone(request)
-    from heuncli.commands.sweep.command import shard_of
-
     name, asked = name_and_number(request.show)
     shard = shard_of(request.shard)
     if request.output is not None and same_file(name, request.output):
@@ -37,12 +37,13 @@ def show(request: SweepRequest, form: str) -> int:
             for one in sweeps:
                 say(f"heun: {shown(name)}:{one.number}  {line_of(one)}")
         rows = store.rows(sweep.number, sweep.head.plan.names, shard)
-        emit(FORMS[form](sweep.head, rows), request.output)
+        tell(sweep.head, rows, how)
+        say_what_stays(request.units, how.form, request.quiet)
         if sweep.done < sweep.head.plan.size and not request.quiet:
             say(f"heun: {sweep.done} of {sweep.head.plan.size} variants are done")
-        summary = summary_of(sweep.head, rows)
-        say_summary(summary, request.quiet)
-        return exit_code(summary, request.strict)
+        noticed = noticed_in(sweep.head, rows)
+        say_noticed(noticed, request.quiet)
+        return exit_code(noticed, request.strict)
 
 
 def name_and_number(word: str) -> tuple[str, int | None]:

@@ -161,7 +161,7 @@ def opened(name: str) -> Store:
 
 
 def _to_read(name: str) -> sqlite3.Connection:
-    """A connection that is to write nothing (rw: the last one clears the journal away); in a folder that may not be written, to a file that nobody writes."""
+    """A connection to read by; rw, for the last one that is closed clears the journal away, if it may."""
     where = Path(name).resolve().as_uri()
     for how in ("mode=rw", "mode=ro", "mode=ro&immutable=1"):
         connection = sqlite3.connect(f"{where}?{how}", uri=True, timeout=PATIENCE, isolation_level=None)
