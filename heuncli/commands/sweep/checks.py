@@ -6,7 +6,7 @@ the reason in its row.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
 from heuncli.commands.sweep.given import GivenAxis
@@ -24,9 +24,9 @@ OF_NAMES = frozenset({
 ONCE = "one axis a parameter"
 
 
-def problems_of(given: Sequence[GivenAxis], asker: Asker, first: dict[str, str]) -> list[Problem]:
-    """What is wrong with the names and units of what is varied; first: values of a variant for specs that need them."""
-    found = list(_twice(given, asker))
+def problems_of(given: Sequence[GivenAxis], asker: Asker, set_: Collection[str]) -> list[Problem]:
+    """What is wrong with the names and units of what is varied; set_: what is set in all variants."""
+    found = list(_twice(given, asker, set_))
     for one in given if not found else ():
         if one.name == CASE and varies_cases(asker.spec):
             found += _cases(one, asker)
@@ -36,19 +36,19 @@ def problems_of(given: Sequence[GivenAxis], asker: Asker, first: dict[str, str])
             )
             found.append(one.told(problem))
         else:
-            found += _values(one, asker, first)
+            found += _values(one, asker)
     return list(dict.fromkeys(found))
 
 
-def _twice(given: Sequence[GivenAxis], asker: Asker) -> Iterator[Problem]:
+def _twice(given: Sequence[GivenAxis], asker: Asker, set_: Collection[str]) -> Iterator[Problem]:
     """What is varied by two words, or varied and set."""
     data = {"parameters": dict.fromkeys(asker.spec.parameters)}
     paths = [path_of(one.name, data) for one in given]
-    set_ = {path_of(name, data): name for name in asker.recipe.overrides}
+    fixed = [path_of(name, data) for name in set_]
     for k, one in enumerate(given):
         if paths[k] in paths[:k]:
             yield one.told(Problem("bad-option", f"{one.name} is varied twice", hint=ONCE))
-        elif paths[k] in set_:
+        elif paths[k] in fixed:
             message = f"{one.name} is varied, and set by --set"
             yield one.told(Problem("bad-option", message, hint="leave one of them out"))
 
@@ -62,18 +62,17 @@ def _cases(one: GivenAxis, asker: Asker) -> Iterator[Problem]:
             yield one.told(Problem("unknown-case", f"there is no load case '{text}'", hint=hint), k)
 
 
-def _values(one: GivenAxis, asker: Asker, first: dict[str, str]) -> Iterator[Problem]:
-    """What is wrong with an axis whatever the size of its values."""
-    others = {name: text for name, text in first.items() if name != one.name}
+def _values(one: GivenAxis, asker: Asker) -> Iterator[Problem]:
+    """What is wrong with an axis whatever the size of its values: of each kind the first place at which it is."""
     for text, k in one.samples().items():
         try:
-            asker.load({**others, one.name: text})
+            asker.load({one.name: text})
         except SpecError as error:
-            for problem in error.problems:
-                if problem.code == "no-such-key":
-                    yield one.told(problem)
-                elif problem.code in OF_NAMES or problem.code.startswith("unknown-"):
-                    yield one.told(problem, k)
+            found = [each for each in error.problems if each.code in OF_NAMES or each.code.startswith("unknown-")]
+            more = f"; in all at {len(found)} places" if len(found) > 1 else ""
+            for problem in found[:1]:
+                told = problem._replace(message=problem.message + more)
+                yield one.told(told, None if problem.code == "no-such-key" else k)
 
 
 def warnings_of(given: Sequence[GivenAxis], asker: Asker) -> list[str]:

@@ -50,7 +50,7 @@ def main(request: SweepRequest) -> int:
     plan = plan_by(given, request)
     asker = asker_of(recipe, plan)
     measure.check(recipe.measures, asker.spec)
-    if problems := problems_of(given, asker, plan.values(0)):
+    if problems := problems_of(given, asker, recipe.overrides):
         raise SpecError(*problems)
     plan = with_cases(plan, asker)
     _require_files(request, path)  # the tables of the spec, too

@@ -36,7 +36,7 @@ def begun(connection: sqlite3.Connection, name: str, kept: bool) -> None:
         # who is killed loses nothing; where the system falls the last rows may be gone, but no file is damaged
         connection.execute("PRAGMA synchronous = NORMAL")
     else:
-        connection.execute("PRAGMA journal_mode = OFF")
+        connection.execute("PRAGMA journal_mode = MEMORY")
         connection.execute("PRAGMA synchronous = OFF")
     connection.execute("BEGIN IMMEDIATE")  # of two that begin at once one waits, and finds all made
     try:
@@ -62,9 +62,7 @@ def require_own(connection: sqlite3.Connection, name: str, may_be_empty: bool = 
     if application == APPLICATION:
         form = connection.execute("PRAGMA user_version").fetchone()[0]
         if form != FORMAT:
-            message = (
-                f"{name}: a store of form {form}, which another version of heun has made; this one reads form {FORMAT}"
-            )
+            message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT}"
             raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER))
         return
     if not may_be_empty or not _is_empty(connection):

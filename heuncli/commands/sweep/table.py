@@ -49,6 +49,8 @@ def axes_in(path: str) -> tuple[GivenAxis, ...]:
     places: list[list[tuple[int, int]]] = [[] for _ in heads]
     for at, row in rows:
         cells = _cells(file, at, row, mark, problems)
+        if not cells:
+            continue
         if len(cells) != len(heads):
             message = f"the row has {len(cells)} cells, the first one {len(heads)}"
             problems.append(Problem(CODE, message, SourceLocation(file, at, 1), "a cell each, or leave the row out"))
