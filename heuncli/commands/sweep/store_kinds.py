@@ -21,6 +21,7 @@ TABLES = (
     "CREATE TABLE answers (key BLOB PRIMARY KEY, measures TEXT NOT NULL, code TEXT NOT NULL, reason TEXT NOT NULL,"
     " warnings TEXT NOT NULL) WITHOUT ROWID",
 )
+JOURNAL = 8000  # pages of the journal, 32 MB, from which on it goes into the tables: each time the disk is waited for
 ATTEMPTS = 200  # to change the kind of the journal while another process does so: SQLite does not wait for that
 PAUSE = 0.05  # seconds
 
@@ -35,6 +36,7 @@ def begun(connection: sqlite3.Connection, name: str, kept: bool) -> None:
         _journal(connection)
         # who is killed loses nothing; where the system falls the last rows may be gone, but no file is damaged
         connection.execute("PRAGMA synchronous = NORMAL")
+        connection.execute(f"PRAGMA wal_autocheckpoint = {JOURNAL}")
     else:
         connection.execute("PRAGMA journal_mode = MEMORY")
         connection.execute("PRAGMA synchronous = OFF")
