@@ -58,7 +58,7 @@ class NamedFiles:
         return read_bytes(str(self.path(name)), LARGEST)
 
     def outside(self, name: str) -> Finding | None:
-        """What to say of a file that stands neither in the spec's folder nor below it; links count by where they lead."""
+        """What to say of a file that is not in the spec's folder or below it; links count by where they lead."""
         try:
             home, given = os.path.realpath(self.folder), os.path.abspath(self.path(name))  # noqa: PTH100  # Path's loop
             leads_to = os.path.realpath(given)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit
+from heuncli.cli.output import emit, say
 from heuncli.cli.solving import overrides, positive, tolerance
 from heuncli.cli.target import format_of
 from heuncli.commands.sweep.request import FORMATS, SweepRequest
@@ -35,7 +35,7 @@ def main(request: SweepRequest) -> int:
     measure.check(recipe.measures, asker.spec)
     plan = _plan(request, words, asker)
     head = head_of(request, asker, plan)
-    rows = list(answered(asker, plan))
+    rows = on_cluster(request, asker, plan) if request.dask is not None else list(answered(asker, plan))
     emit(FORMS[form](head, rows), request.output)
     return 1 if request.strict and any(row.answer.code for row in rows) else 0
 
@@ -94,3 +94,13 @@ def answered(asker: Asker, plan: Plan) -> Iterator[SweptRow]:
     for number in plan.numbers():
         values = plan.values(number)
         yield SweptRow(number, values, asker.answer(values))
+
+
+def on_cluster(request: SweepRequest, asker: Asker, plan: Plan) -> list[SweptRow]:
+    """The rows, in order, of variants that a Dask cluster solves."""
+    from heuncli.commands.sweep.cluster import answers_of
+
+    assert request.dask is not None
+    tell = (lambda line: None) if request.quiet else (lambda line: say(f"heun: {line}"))
+    found = answers_of(asker.recipe, plan, plan.numbers(), request.dask, plan.size, tell)
+    return [SweptRow(number, plan.values(number), answer) for number, answer in sorted(found)]
