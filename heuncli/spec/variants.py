@@ -28,6 +28,7 @@ from heuncli.spec.fields import Context
 from heuncli.spec.load import Loading
 from heuncli.spec.lookups import Log, Lookup, Watched, WatchedFields, changed
 from heuncli.spec.models import Spec
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.names import Names, mapping
 from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.quantity import Scope
@@ -47,12 +48,13 @@ class SpecVariants:
         overrides: Mapping[str, str] | None = None,
         checking: bool = True,
         case: str | None = None,
+        files: NamedFiles | None = None,
     ) -> None:
-        """Read the spec as `load` does; overrides: those of all variants. Raises SpecError."""
+        """Read the spec as `load` does; overrides: those of all variants; files: those it names. Raises SpecError."""
         begin_file()
         self.overrides = dict(overrides or {})
         source = read(str(path), text)
-        self._first = FirstReading(str(path), source, self.overrides, checking, case)
+        self._first = FirstReading(str(path), source, self.overrides, checking, case, files)
         self.spec = self._first.spec()
 
     def load(self, overrides: Mapping[str, str]) -> Spec:
@@ -66,7 +68,7 @@ class SpecVariants:
             return LaterReading(first, given).spec()
         except SpecError:
             begin_file()
-            return Loading(first.path, first.source, given, first.checking, first.case).spec()
+            return Loading(first.path, first.source, given, first.checking, first.case, first.files).spec()
 
     def idle(self, names: Collection[str]) -> frozenset[str]:
         """The parameters among some names which no entry and no table looks up, nor another parameter that one does.
@@ -111,9 +113,15 @@ class FirstReading(Loading):
     """The reading that writes down what everything hangs on."""
 
     def __init__(
-        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+        self,
+        path: str,
+        source: SourceFile,
+        overrides: Mapping[str, str],
+        checking: bool,
+        case: str | None,
+        files: NamedFiles | None,
     ) -> None:
-        super().__init__(path, source, overrides, checking, case)
+        super().__init__(path, source, overrides, checking, case, files)
         self.log = Log()
         self.entries: dict[Path_, KeptEntry] = {}
         self.with_shapes: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # as read, and with its shapes
@@ -204,7 +212,7 @@ class LaterReading(Loading):
 
     def __init__(self, first: FirstReading, overrides: Mapping[str, str]) -> None:
         self.first = first
-        super().__init__(first.path, first.source, overrides, first.checking, first.case)
+        super().__init__(first.path, first.source, overrides, first.checking, first.case, first.files)
 
     def completed(self, given: dict[str, Any]) -> dict[str, Any]:
         """The data as they are read, with the blocks and entries of the first reading where they are the same."""

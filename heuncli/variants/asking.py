@@ -10,6 +10,7 @@ from heuncli.errors import HeunError, SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
+from heuncli.spec.named_files import KeptFile, KeptFiles
 from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, lost_from, value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
@@ -52,7 +53,7 @@ class Recipe(NamedTuple):
     """All that is needed to answer variants of a spec, in this process or another.
 
     text: the spec as it was read; overrides: set in all variants, in the form of `--set`; case: the load case on top of
-    which they go.
+    which they go; files: those that the spec names, as they were read, None where they stand beside it (files.py).
     """
 
     path: str
@@ -61,6 +62,7 @@ class Recipe(NamedTuple):
     options: Options
     overrides: Mapping[str, str]
     case: str | None = None
+    files: Mapping[str, KeptFile] | None = None
 
 
 class Asker:
@@ -69,6 +71,7 @@ class Asker:
     def __init__(self, recipe: Recipe) -> None:
         """Read the spec and set it up once. Raises SpecError."""
         self.recipe = recipe
+        self._files = None if recipe.files is None else KeptFiles(recipe.path, recipe.files)
         self._prepared: dict[str | None, Variants] = {}
         self.spec = self.variants(recipe.case).spec
 
@@ -79,7 +82,7 @@ class Asker:
             recipe = self.recipe
             found = Variants(
                 recipe.path, recipe.text, options=recipe.options, overrides=recipe.overrides, case=case,
-                measures=[asked.path for asked in recipe.measures],
+                measures=[asked.path for asked in recipe.measures], files=self._files,
             )  # fmt: skip
             self._prepared[case] = found
         return found

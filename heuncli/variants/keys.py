@@ -18,19 +18,17 @@ import hashlib
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from pathlib import Path
 from typing import Any
 
 from heuncli.errors import Finding, SourceLocation
 from heuncli.method_rows import canonical
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.cases import settings_of
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.names import mapping
 from heuncli.spec.overrides import Setting, of_words, override
 from heuncli.spec.quantity import Scope, measure, unit_in
-from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 from heuncli.spec.source import FLOAT, INTEGER, SourceFile, read
-from heuncli.spec.tables import LARGEST
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Recipe
 from heuncli.version import VERSION
@@ -112,9 +110,8 @@ class VariantKeys:
         if type(file) is not str:
             return ""
         if file not in self.files:
-            folder = Path() if self.recipe.path == STANDARD_INPUT else Path(self.recipe.path).parent
             try:
-                self.files[file] = hashlib.sha256(read_bytes(str(folder / file), LARGEST)).hexdigest()
+                self.files[file] = hashlib.sha256(NamedFiles(self.recipe.path).content(file)).hexdigest()
             except Finding:
                 self.files[file] = ""
         return self.files[file]

@@ -77,6 +77,14 @@ class SweepRequest(NamedTuple):
     ] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    dask: Annotated[
+        str | None,
+        Option(
+            ("--dask",),
+            "The scheduler of a Dask cluster whose workers solve the variants; takes heuncli[dask].",
+            "tcp://HOST:PORT",
+        ),
+    ] = None
     units: Annotated[str | None, UNITS] = None
     all: Annotated[bool, Option(("--all",), "Tables show all variants, however many.")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a variant could not be solved.")] = False

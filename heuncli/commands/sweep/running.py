@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Iterator
+from collections.abc import Generator, Iterator
 from contextlib import closing
 
 from heuncli.cli import jobs
@@ -103,22 +103,37 @@ def _done(sweep: Sweep, number: int, request: SweepRequest, stopping: Stopping) 
                 under_way[variant] = under
                 yield variant
 
-    processes = jobs.how_many(request.jobs, sweep.size)
-    with progress(request.quiet) as tell:
-        answers = answers_of(sweep.asker, plan, missing(), processes, stopping.descriptor)
-        with closing(answers):  # type: ignore[type-var]
-            try:
-                for variant, answer in answers:
-                    if not count.solved and answer.code in NO_NUMBER:
-                        _require_numbers(sweep.asker, plan.values(variant))
-                    store.keep(number, variant, *under_way.pop(variant), answer)
-                    count.take(answer)
-                    count.tell(tell)
-            except OutputError as error:
-                told = f"; {count.done} of {count.of} variants are done" + (" and kept" if request.store else "")
-                error.tell(*(problem._replace(message=problem.message + told) for problem in error.problems))
-                raise
+    answers = _answers(sweep, missing(), request, stopping.descriptor)
+    with progress(request.quiet) as tell, closing(answers):
+        try:
+            for variant, answer in answers:
+                if not count.solved and answer.code in NO_NUMBER:
+                    _require_numbers(sweep.asker, plan.values(variant))
+                store.keep(number, variant, *under_way.pop(variant), answer)
+                count.take(answer)
+                count.tell(tell)
+        except OutputError as error:
+            told = f"; {count.done} of {count.of} variants are done" + (" and kept" if request.store else "")
+            error.tell(*(problem._replace(message=problem.message + told) for problem in error.problems))
+            raise
     return count.done
+
+
+def _answers(
+    sweep: Sweep, numbers: Iterator[int], request: SweepRequest, stopped: int
+) -> Generator[tuple[int, Answer], None, None]:
+    """The variants answered, by processes of this machine or by a cluster."""
+    plan = sweep.head.plan
+    if request.dask is None:
+        yield from answers_of(sweep.asker, plan, numbers, jobs.how_many(request.jobs, sweep.size), stopped)
+        return
+    from heuncli.commands.sweep import cluster  # what is heavy, and not everybody has
+
+    def told(line: str) -> None:
+        if not request.quiet:
+            say(f"heun: {line}")
+
+    yield from cluster.answers_of(sweep.asker.recipe, plan, numbers, request.dask, sweep.size, told, stopped)
 
 
 class Count:

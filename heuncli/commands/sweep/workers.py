@@ -17,12 +17,12 @@ from itertools import islice
 
 from heuncli.cli import alarm, jobs
 from heuncli.cli.entry import contained
+from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import HeunError
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.asking import Answer, Asker, failed
 from heuncli.variants.plans import Plan
 
-WORKER_DIED = "worker-died"
 BATCH = 0.2  # seconds that a batch takes: long beside the way to a process and back, short beside what a kill loses
 GROWTH = 8  # times the batch before, at most: of the first variants some wait for what is only made once
 MOST = 2000  # variants of a batch
