@@ -27,11 +27,12 @@ STEEP = 0.5  # a rise by a lesser power of the way is a jump
 def freedoms(trials: Trials, best: Trial) -> tuple[Freedom, ...]:
     """Of each variable. Impure: tries variants."""
     trials.phase = "freedom"
-    floor = trials.floor * trials.scale
+    floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
+    hundredth *= hundredth > floor  # of next to nothing it is not told from nothing
     found = []
     for which in range(len(best.place)):
         down, up = (_Side(trials, best, which, way) for way in (-1.0, 1.0))
-        wide = down.move(HUNDREDTH * abs(best.goal)), up.move(HUNDREDTH * abs(best.goal))
+        wide = down.move(hundredth), up.move(hundredth)
         found.append(Freedom((down.move(floor), up.move(floor)), wide))
     return tuple(found)
 
