@@ -98,9 +98,9 @@ def searched(request: TuneRequest, asked: Asked, asker: Asker) -> Tuning:
 def require_answer(found: TuneResults) -> None:
     """Raise SolveError where no variant could be solved."""
     if found.best is None:
-        counted = Counter(trial.failure for trial in found.history)
-        (code, reason), times = counted.most_common(1)[0]
-        message = f"none of {len(found.history)} variants could be solved; {times} of them: {reason}"
+        code, times = Counter(trial.failure[0] for trial in found.history).most_common(1)[0]
+        reason = next(trial.failure[1] for trial in found.history if trial.failure[0] == code)
+        message = f"none of {len(found.history)} variants could be solved; {times} of them as this one: {reason}"
         raise SolveError(Problem(code, message, hint="heun run --set with one of them tells more; or other bounds"))
 
 
