@@ -11,7 +11,7 @@ Impure: reads the spec's file and those of its tables, when it is made; a table 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -29,6 +29,7 @@ from heuncli.spec.fields import Context
 from heuncli.spec.load import Loading
 from heuncli.spec.lookups import Log, Lookup, Watched, WatchedDocument, changed, changed_in_document
 from heuncli.spec.models import Spec
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.names import Names, mapping
 from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.quantity import Scope
@@ -52,12 +53,13 @@ class SpecVariants:
         overrides: Mapping[str, str] | None = None,
         checking: bool = True,
         case: str | None = None,
+        files: NamedFiles | None = None,
     ) -> None:
-        """Read the spec as `load` does; overrides: those of all variants. Raises SpecError."""
+        """Read the spec as `load` does; overrides: those of all variants; files: those it names. Raises SpecError."""
         begin_file()
         self.overrides = dict(overrides or {})
         source = read(str(path), text)
-        self._first = FirstReading(str(path), source, self.overrides, checking, case)
+        self._first = FirstReading(str(path), source, self.overrides, checking, case, files)
         self.spec = self._first.spec()
 
     def load(self, overrides: Mapping[str, str]) -> Spec:
@@ -71,7 +73,22 @@ class SpecVariants:
             return LaterReading(first, given).spec()
         except SpecError:
             begin_file()
-            return Loading(first.path, first.source, given, first.checking, first.case).spec()
+            return Loading(first.path, first.source, given, first.checking, first.case, first.files).spec()
+
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names which no entry and no table looks up, nor another parameter that one does.
+
+        What is expected of the results does not count.
+        """
+        first = self._first
+        read = [kept.lookups for path, kept in first.entries.items() if path[:1] != ("expect",)]
+        read += [kept.lookups for kept in first.built.values()]
+        used: set[object] = set()
+        waiting: set[object] = {lookup.key for lookups in read for lookup in lookups if lookup.of == "parameters"}
+        while waiting:
+            used |= waiting
+            waiting = {name for one in waiting for name in first.known.uses.get(str(one), ())} - used
+        return frozenset(name for name in names if name in first.known.uses and name not in used)
 
 
 class KeptEntry(NamedTuple):
@@ -122,9 +139,15 @@ class FirstReading(Loading):
     """The reading that writes down what everything hangs on."""
 
     def __init__(
-        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+        self,
+        path: str,
+        source: SourceFile,
+        overrides: Mapping[str, str],
+        checking: bool,
+        case: str | None,
+        files: NamedFiles | None,
     ) -> None:
-        super().__init__(path, source, overrides, checking, case)
+        super().__init__(path, source, overrides, checking, case, files)
         self.log = Log()
         self.entries: dict[Path_, KeptEntry] = {}
         self.document: f.Document
@@ -322,7 +345,7 @@ class LaterReading(Loading):
 
     def __init__(self, first: FirstReading, overrides: Mapping[str, str]) -> None:
         self.first = first
-        super().__init__(first.path, first.source, overrides, first.checking, first.case)
+        super().__init__(first.path, first.source, overrides, first.checking, first.case, first.files)
 
     def completed(self, given: dict[str, Any]) -> dict[str, Any]:
         """The data as they are read, with the blocks and entries of the first reading where they are the same."""
