@@ -16,6 +16,7 @@ from types import MappingProxyType
 from typing import Any
 
 from heuncli.errors import Finding
+from heuncli.expressions.calculations import Calculation, Source
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.point_names import FORM, point_meant
@@ -97,6 +98,8 @@ class Scope:
     joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
     only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
+    calculations: numbers of parameters alone that were read before, by their texts, in a spec whose names are the same;
+    keeps: those that are read are put there.
     """
 
     parameters: Mapping[str, float | None] = NONE
@@ -106,6 +109,8 @@ class Scope:
     given: Mapping[str, GivenParameter] = NONE
     points: Mapping[str, Collection[str]] = NONE
     with_units: bool = False
+    calculations: dict[str, Calculation] | None = None
+    keeps: bool = False
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -135,13 +140,38 @@ class Follows(Finding):
 def compile_expression(text: str, scope: Scope) -> Expression:
     """The expression a text means. Raises Finding."""
     require_length(text)
+    known = scope.calculations if not scope.with_units else None
+    calculation = known.get(text) if known is not None else None
+    if calculation is not None and all(dimension_in(scope, n) == d for n, d in calculation.dimensions.items()):
+        expression = calculation.again(scope.parameters)
+        if expression is not None:
+            return expression
     try:
-        return _Parser(text, scope).parse()
+        parser = _Parser(text, scope)
+        expression = parser.parse()
+        if known is not None and scope.keeps and expression.constant is not None:
+            keep(known, text, expression, parser.codegen.sources, scope)
+        return expression
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
         hint = "; ".join(filter(None, [told_of(text, scope), finding.hint]))
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
+
+
+def keep(
+    known: dict[str, Calculation], text: str, expression: Expression, sources: list[Source] | None, scope: Scope
+) -> None:
+    """Keep how a number was calculated, where no choice hangs on a value."""
+    if sources is not None:
+        names = {source for source in sources if isinstance(source, str)}
+        known[text] = Calculation(expression, tuple(sources), {name: dimension_in(scope, name) for name in names})
+
+
+def dimension_in(scope: Scope, name: str) -> Dimension | None:
+    """The dimension of a parameter, if it has one."""
+    given = scope.given.get(name)
+    return given.dimension if given is not None else None
 
 
 def require_length(text: str) -> None:
@@ -376,6 +406,8 @@ class _Parser:
         exponent = self.unary()  # binds to the right: 2**-3**2
         self.nested -= 1
         n = exponent.constant
+        if not self.codegen.is_written(exponent):  # which operation it is hangs on it
+            self.codegen.sources = None
         measure = raised(part.measure, n, exponent.measure)
         if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
             whole = self.codegen.apply("power", part, argument=int(abs(n)))
@@ -553,7 +585,7 @@ class _Parser:
             if value is None:
                 raise Follows
             given = self.scope.given.get(name)
-            return self.codegen.number(value, known(given.dimension) if given is not None else FREE)
+            return self.codegen.number(value, known(given.dimension) if given is not None else FREE, name)
         if name in CONSTANTS:
             return self.codegen.number(CONSTANTS[name], loose(RATE) if name == "rpm" else FACTOR)
         if name == "t":

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from heuncli.errors import SourceLocation, SpecError
+from heuncli.expressions.calculations import Calculation
+from heuncli.expressions.grammar import GivenParameter
 from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import begin_file
@@ -155,6 +157,7 @@ class FirstReading(Loading):
         self.built: dict[str, KeptTable] = {}
         self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
         self.verdicts: list[KeptVerdict] = []
+        self.calculations: dict[str, Calculation] = {}
         self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
         self.reached: dict[str, KeptMeaning] = {}
         self.below: dict[frozenset[Path_], list[Path_]] = {}
@@ -182,6 +185,10 @@ class FirstReading(Loading):
         self.given_parameters = self.block("parameters")
         self.known = evaluate_parameters(self.given_parameters)
         return self.known
+
+    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
+        """The names that a number may use that is read once; how it is calculated is kept."""
+        return replace(super().scope(parameters, given), calculations=self.calculations, keeps=True)
 
     def reader(self, context: Context) -> Reader:
         """A reader that keeps what it reads."""
@@ -375,6 +382,12 @@ class LaterReading(Loading):
         """The parameters."""
         given = self.block("parameters")
         return evaluate_parameters(given, _unchanged(given, self.first.given_parameters, self.first.known))
+
+    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
+        """The names that a number may use; where they are those of the first reading, what that has read is known."""
+        same_names = self.by_parameters and parameters.keys() == self.first.known.values.keys()
+        calculations = self.first.calculations if same_names else None
+        return replace(super().scope(parameters, given), calculations=calculations)
 
     def reader(self, context: Context) -> Reader:
         """A reader that takes entries from the first reading."""
