@@ -8,7 +8,7 @@ makes of earlier ones. With other values it is the same row, as long as no choic
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.expressions.programs import Expression
 from heuncli.kernel.choose import expressions
@@ -26,6 +26,7 @@ class Operation(NamedTuple):
     operands: tuple[int, ...]
 
 
+MOST = 7  # calculations of one text, beside the last
 Source = float | str | Operation  # of a number: as it is written, a parameter's name, or made of others
 
 
@@ -55,3 +56,35 @@ class Calculation(NamedTuple):
             return None
         again: Expression = replace(self.expression, constant=constant, constants=tuple(numbers))
         return again
+
+
+class Calculations:
+    """Numbers that were read, by their texts. Impure: what is read is kept, which changes no number.
+
+    Of a text there are several where its parameters were given with units, and without.
+    """
+
+    def __init__(self) -> None:
+        self.known: dict[str, tuple[Calculation, ...]] = {}
+
+    def again(
+        self, text: str, parameters: Mapping[str, float | None], dimension_of: Callable[[str], Dimension | None]
+    ) -> Expression | None:
+        """What a text means with these values; None: it has to be read."""
+        for one in self.known.get(text, ()):
+            if all(dimension_of(name) == dimension for name, dimension in one.dimensions.items()):
+                return one.again(parameters)
+        return None
+
+    def keep(
+        self,
+        text: str,
+        expression: Expression,
+        sources: Sequence[Source] | None,
+        dimension_of: Callable[[str], Dimension | None],
+    ) -> None:
+        """Keep how a number was calculated; sources: None where a choice hangs on a value."""
+        if sources is not None:
+            dimensions = {name: dimension_of(name) for name in sources if isinstance(name, str)}
+            others = self.known.get(text, ())[-MOST:]
+            self.known[text] = (*others, Calculation(expression, tuple(sources), dimensions))

@@ -11,12 +11,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any
 
 from heuncli.errors import Finding
-from heuncli.expressions.calculations import Calculation, Source
+from heuncli.expressions.calculations import Calculations
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.point_names import FORM, point_meant
@@ -98,8 +98,7 @@ class Scope:
     joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
     only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
-    calculations: numbers of parameters alone that were read before, by their texts, in a spec whose names are the same;
-    keeps: those that are read are put there.
+    calculations: numbers of parameters alone that were read before, in a spec whose names are the same.
     """
 
     parameters: Mapping[str, float | None] = NONE
@@ -109,8 +108,7 @@ class Scope:
     given: Mapping[str, GivenParameter] = NONE
     points: Mapping[str, Collection[str]] = NONE
     with_units: bool = False
-    calculations: dict[str, Calculation] | None = None
-    keeps: bool = False
+    calculations: Calculations | None = None
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -141,31 +139,20 @@ def compile_expression(text: str, scope: Scope) -> Expression:
     """The expression a text means. Raises Finding."""
     require_length(text)
     known = scope.calculations if not scope.with_units else None
-    calculation = known.get(text) if known is not None else None
-    if calculation is not None and all(dimension_in(scope, n) == d for n, d in calculation.dimensions.items()):
-        expression = calculation.again(scope.parameters)
-        if expression is not None:
-            return expression
+    found = known.again(text, scope.parameters, partial(dimension_in, scope)) if known is not None else None
+    if found is not None:
+        return found
     try:
         parser = _Parser(text, scope)
         expression = parser.parse()
-        if known is not None and scope.keeps and expression.constant is not None:
-            keep(known, text, expression, parser.codegen.sources, scope)
+        if known is not None and expression.constant is not None:
+            known.keep(text, expression, parser.codegen.sources, partial(dimension_in, scope))
         return expression
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
         hint = "; ".join(filter(None, [told_of(text, scope), finding.hint]))
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
-
-
-def keep(
-    known: dict[str, Calculation], text: str, expression: Expression, sources: list[Source] | None, scope: Scope
-) -> None:
-    """Keep how a number was calculated, where no choice hangs on a value."""
-    if sources is not None:
-        names = {source for source in sources if isinstance(source, str)}
-        known[text] = Calculation(expression, tuple(sources), {name: dimension_in(scope, name) for name in names})
 
 
 def dimension_in(scope: Scope, name: str) -> Dimension | None:

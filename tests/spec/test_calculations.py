@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from heuncli.errors import Finding
-from heuncli.expressions.calculations import Calculation
+from heuncli.expressions.calculations import Calculations
 from heuncli.expressions.grammar import GivenParameter, Scope, compile_expression
 from heuncli.expressions.units import FORCE, LENGTH
 from tests.shared.bits import bits
@@ -19,9 +19,9 @@ AGAIN = (
 CHOICES = ("a if a > b else b", "a or b", "a and b", "a < b < n", "a**n", "a**(n - 1)", "2**n", "not a if b else n")
 
 
-def kept(text: str) -> dict[str, Calculation]:
-    known: dict[str, Calculation] = {}
-    compile_expression(text, Scope(FIRST, calculations=known, keeps=True))
+def kept(text: str) -> Calculations:
+    known = Calculations()
+    compile_expression(text, Scope(FIRST, calculations=known))
     return known
 
 
@@ -29,7 +29,7 @@ def kept(text: str) -> dict[str, Calculation]:
 def test_a_calculation_is_what_reading_makes_of_it(text: str) -> None:
     known = kept(text)
     for values in (*OTHERS, FIRST):
-        again = known[text].again(values)
+        again = known.again(text, values, lambda _: None)
         try:
             read = compile_expression(text, Scope(values))
         except Finding:
@@ -42,13 +42,13 @@ def test_a_calculation_is_what_reading_makes_of_it(text: str) -> None:
 
 @pytest.mark.parametrize("text", CHOICES)
 def test_where_a_choice_hangs_on_a_value_nothing_is_kept(text: str) -> None:
-    assert kept(text) == {}
+    assert kept(text).known == {}
 
 
 def test_what_there_is_to_be_told_of_is_read() -> None:
     known = kept("a/b")
-    assert known["a/b"].again({"a": 1.0, "b": 0.0}) is None
-    assert known["a/b"].again({"a": 1.0, "b": None}) is None
+    for b in (0.0, None):
+        assert known.again("a/b", {"a": 1.0, "b": b}, lambda _: None) is None
     with pytest.raises(Finding, match="not a finite number"):
         compile_expression("a/b", Scope({"a": 1.0, "b": 0.0}, calculations=known))
 
@@ -59,4 +59,7 @@ def test_other_dimensions_are_read_anew() -> None:
     with pytest.raises(Finding, match="adds"):
         compile_expression("a + b", Scope(FIRST, given=given, calculations=known))
     alike = {"a": GivenParameter(LENGTH, "2 m"), "b": GivenParameter(LENGTH, "1 m")}
-    assert compile_expression("a + b", Scope(FIRST, given=alike, calculations=known)).dimension == LENGTH
+    for _ in range(2):
+        assert compile_expression("a + b", Scope(FIRST, given=alike, calculations=known)).dimension == LENGTH
+    assert compile_expression("a + b", Scope(FIRST, calculations=known)).dimension is None
+    assert len(known.known["a + b"]) == 2
