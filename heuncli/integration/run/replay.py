@@ -80,7 +80,8 @@ def by_its_steps(moving: IntegratedScene, run: Trajectory, times: Array, step: I
 def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
     """States (n_t, n') of what is integrated at instants within the steps from a kept record on to step `last`.
 
-    record: its place in `run.kept`. The run takes over the polynomials that the steps make. Raises SolveError where a step cannot be done again, as an implicit one.
+    record: its place in `run.kept`. The run takes over the polynomials that the steps make.
+    Raises SolveError where a step cannot be done again, as an implicit one.
     """
     first, state = int(run.kept.steps[record]), run.kept.records[record]
     given = Start(moving.layout.y0, math.inf, following=True)
