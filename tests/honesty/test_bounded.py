@@ -15,7 +15,7 @@ from heuncli.study.model.setup import Setup, set_up
 from tests.shared.folders import SPECS
 
 NAMES = ("double", "chain", "flat_four_bar", "top")
-AT = np.linspace(0.0, 0.5, 41)
+AT = np.linspace(0.0, 0.5, 201)
 
 
 def together(setup: Setup, states: list[Array]) -> Recovered:
