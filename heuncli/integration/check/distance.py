@@ -84,6 +84,9 @@ def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0)
     several: answers of so many runs, instant by instant; first: the number of the one.
     """
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
+    if not turning and not layout.counters:
+        n = len(several.times) // count
+        return np.zeros(n), np.ones(n)
     angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
     own = angles[first::count]
     others = range(first + 1, count)
