@@ -66,6 +66,8 @@ COMMANDS = (
     Command("chart", folder="charting", page="chart", grace=0.8),
     Command("probe", folder="probing", page="probe", phase="while the neighbourhood of the motion was looked at"),
     Command("lagrange", page="lagrange", phase="while the equations were made"),
+    Command("sweep", page="variants"),
+    Command("tune", page="variants", grace=0.8, phase="while variants were tried"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
     Command("methods", page="methods"),
@@ -73,7 +75,7 @@ COMMANDS = (
     Command("schema"),
     Command("new"),
 )
-LATER_COMMANDS = ("sweep", "plot")  # not in this version yet
+LATER_COMMANDS = ("plot",)  # not in this version yet
 
 
 def command_of(name: str) -> Command | None:

@@ -78,30 +78,32 @@ def read(path: str, text: str | None) -> SourceFile:
     """The content of a file ("-" is standard input), or of a text that stands for it. Raises SpecError."""
     file = "<stdin>" if path == STANDARD_INPUT else path
     if text is None:
-        try:
-            raw: bytes | bytearray = read_bytes(path, LARGEST)
-        except Finding as finding:
-            raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint)) from None
-        try:
-            text = raw.decode("utf-8-sig")
-        except UnicodeDecodeError as error:
-            line = raw.count(b"\n", 0, error.start)
-            column = error.start - raw.rfind(b"\n", 0, error.start)
-            hint = "save the file as UTF-8" + (
-                " (it looks like UTF-16)" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else ""
-            )
-            message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
-            raise SpecError(Problem("not-utf8", message, SourceLocation(file, line + 1, column), hint)) from None
-    else:
-        try:
-            raw = text.encode()
-        except UnicodeEncodeError as error:
-            line, column = position(text, error.start)
-            raise SpecError(
-                Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
-            ) from None
-        text = text.removeprefix("\ufeff")
-    return parse(file, text, digest(raw))
+        text = text_in(path)
+    try:
+        raw = text.encode()
+    except UnicodeEncodeError as error:
+        line, column = position(text, error.start)
+        raise SpecError(
+            Problem("not-utf8", "a character is not Unicode", SourceLocation(file, line, column), "delete it")
+        ) from None
+    return parse(file, text.removeprefix("\ufeff"), digest(raw))
+
+
+def text_in(path: str) -> str:
+    """The text of a file ("-" is standard input), a mark of its byte order included. Raises SpecError."""
+    file = "<stdin>" if path == STANDARD_INPUT else path
+    try:
+        raw: bytes | bytearray = read_bytes(path, LARGEST)
+    except Finding as finding:
+        raise SpecError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint)) from None
+    try:
+        return raw.decode()
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start)
+        column = error.start - raw.rfind(b"\n", 0, error.start)
+        hint = "save the file as UTF-8" + (" (it looks like UTF-16)" if raw[:2] in (b"\xff\xfe", b"\xfe\xff") else "")
+        message = f"byte 0x{raw[error.start]:02x} is not UTF-8"
+        raise SpecError(Problem("not-utf8", message, SourceLocation(file, line + 1, column), hint)) from None
 
 
 def position(text: str, index: int) -> tuple[int, int]:

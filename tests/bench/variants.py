@@ -11,7 +11,7 @@ from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.variants import Variants
+from heuncli.variants.prepared import Variants
 from tests.shared.folders import ROOT, SPECS
 
 STARTERS = ROOT / "heuncli" / "starters"

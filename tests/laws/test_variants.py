@@ -16,7 +16,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.variants import Variants
+from heuncli.variants.prepared import Variants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
 

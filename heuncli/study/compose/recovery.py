@@ -83,7 +83,8 @@ class Recovery:
 
         if self.told:
             return Resolution(self.unsplit)
-        return resolve(self.setup.runner, self.recovered, self.states, self.unsplit, self.least_norm)
+        setup = self.setup
+        return resolve(setup.runner, self.recovered, self.states, self.unsplit, self.least_norm, setup.known)
 
     @property
     def verdicts(self) -> bool:
