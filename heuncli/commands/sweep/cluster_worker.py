@@ -36,12 +36,15 @@ class AbleWorker(NamedTuple):
 
 
 class PartAnswered(NamedTuple):
-    """The answers of the first variants of a batch, and what they took [s]; lacking: the file that the next one names,
-    where the recipe has it not."""
+    """The answers of the first variants of a batch, and what they took [s].
 
-    answers: tuple[Answer, ...]
-    seconds: float
+    lacking: the file that the next one names, where the recipe has it not; broken: why this worker answers nothing.
+    """
+
+    answers: tuple[Answer, ...] = ()
+    seconds: float = 0.0
     lacking: str = ""
+    broken: str = ""
 
 
 # What a worker is asked first, as text: with no heun there, no function of it could be sent.
@@ -108,8 +111,16 @@ class HeldRecipe:
 
 
 def answered(held: HeldRecipe, variants: Sequence[Variant], seconds: float) -> PartAnswered:
-    """The task of a worker: see HeldRecipe.answered."""
-    return held.answered(variants, seconds)
+    """The task of a worker: see HeldRecipe.answered. What is raised is told in words: Dask cannot send all of it."""
+    try:
+        return held.answered(variants, seconds)
+    except Exception as error:
+        return PartAnswered(broken=in_words(error))
+
+
+def in_words(error: BaseException | None) -> str:
+    """An exception on a line."""
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
 
 
 def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
