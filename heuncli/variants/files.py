@@ -39,13 +39,13 @@ def with_more_files(recipe: Recipe, names: Iterable[str]) -> Recipe:
 
 def _cases(plan: Plan, known: Iterable[str]) -> Iterator[str]:
     """The load cases that the plan varies."""
-    texts = {text for axis in plan.axes if axis.name == CASE for text in axis.texts}
+    texts = {text for axis in (*plan.columns, *plan.axes) if axis.name == CASE for text in axis.texts}
     return (case for case in known if case in texts)
 
 
 def _set_by(plan: Plan) -> Iterator[str]:
     """The files that axes name."""
-    for axis in plan.axes:
+    for axis in (*plan.columns, *plan.axes):
         if axis.name.endswith(KEYS):
             for text in axis.texts:
                 settings, _ = of_words({axis.name: text})

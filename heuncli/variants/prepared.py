@@ -9,7 +9,7 @@ looked up (spec/variants.py), so a variant is what `heun run --set` makes of it,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -59,6 +59,10 @@ class Variants:
     def spec(self) -> Spec:
         """The scene as it was read, with what is set in all variants."""
         return self._specs.spec
+
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names on which nothing of the scene hangs."""
+        return self._specs.idle(names)
 
     def load(self, values: Mapping[str, str]) -> Spec:
         """The scene with other values, by the names and in the form of `--set`. Raises SpecError."""

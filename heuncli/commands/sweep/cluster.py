@@ -26,13 +26,13 @@ from heuncli.commands.sweep.cluster_door import PATIENCE, ClusterGone, connected
 from heuncli.commands.sweep.cluster_lots import WORKERS, Lot, Lots
 from heuncli.commands.sweep.cluster_members import Member, Members, Task, named
 from heuncli.commands.sweep.cluster_worker import PartAnswered, Variant, in_words
+from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import Problem
 from heuncli.variants.asking import Answer, Recipe
 from heuncli.variants.files import with_files, with_more_files
 from heuncli.variants.plans import Plan
 from heuncli.version import VERSION
 
-WORKER_DIED = "worker-died"
 LOOK = 1.0  # seconds from one look at who is there to the next
 LONGEST_WAIT = 600.0  # seconds without a worker
 FETCH = 2.0  # seconds for the answers of a lot that is done
