@@ -19,6 +19,7 @@ from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from itertools import chain
 from typing import Any
 
 from heuncli.cli.entry import UsageError
@@ -55,7 +56,10 @@ def answers_of(
     many: how many numbers there are; tell: is given lines on workers; stopped: a descriptor, and what can be read there
     ends it. Raises UsageError: bad-option, no-dask, no-cluster, no-worker; ClusterGone.
     """
-    variants = ((number, plan.values(number)) for number in numbers)
+    first = next(numbers, None)
+    if first is None:  # nobody is needed
+        return
+    variants = ((number, plan.values(number)) for number in chain((first,), numbers))
     with connected(address) as client:
         sweeping = _Sweeping(client, address, with_files(recipe, plan), Lots(variants, many), tell)
         try:

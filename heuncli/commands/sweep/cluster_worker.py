@@ -15,8 +15,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from heuncli.cli.entry import contained
-from heuncli.errors import HeunError
+from heuncli.commands.sweep.workers import answer_of
 from heuncli.kernel.form import KERNEL
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.named_files import FileNotKept
@@ -121,25 +120,3 @@ def answered(held: HeldRecipe, variants: Sequence[Variant], seconds: float) -> P
 def in_words(error: BaseException | None) -> str:
     """An exception on a line."""
     return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
-
-
-def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
-    """What a variant answers: also where the memory ends, or heun itself is at fault. Raises FileNotKept."""
-    words = ("sweep", asker.recipe.path, *(f"{name}={text}" for name, text in values.items()))
-    lacking: list[FileNotKept] = []
-
-    def work() -> Answer:
-        try:
-            return asker.answer(values)
-        except FileNotKept as missing:
-            lacking.append(missing)
-            return Answer()
-
-    try:
-        answer = contained(work, words)
-    except HeunError as error:
-        problem = error.problems[0]
-        return Answer(code=problem.code, reason=problem.message)
-    if lacking:
-        raise lacking[0]
-    return answer
