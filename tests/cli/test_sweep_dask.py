@@ -185,8 +185,7 @@ def test_a_variant_that_ends_its_workers_is_found_out(
         "    return plain(asker, values)\n"
         "cluster_worker.answer_of = answer_of\n"
     )
-    for one in dask.workers:
-        one.kill()
+    dask.with_workers(0)
     dask.work("--nanny", "--preload", dask.preload(ending))
     dask.there(1)
     found = gathered(there(recipe, plan("m=1,2,3,4,5,6,7,8"), dask.address))
@@ -267,8 +266,6 @@ def test_who_cannot_be_reached_for_long_is_given_up(
     dask: DaskCluster, recipe: Recipe, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster, "LONGEST_WAIT", 1.0)
-    for one in dask.workers:
-        one.kill()
-    dask.there(0)
+    dask.with_workers(0)
     with pytest.raises(ClusterGone, match="there was no worker for 1 s"):
         list(there(recipe, plan(), dask.address))

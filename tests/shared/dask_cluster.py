@@ -103,8 +103,10 @@ class DaskCluster:
             yield client
 
     def with_workers(self, count: int) -> list[str]:
-        """Start as many as are missing, wait for them; returns the addresses."""
+        """So many of one thread, those that are there among them; returns the addresses."""
         self.workers = [one for one in self.workers if one.process.poll() is None]
+        while len(self.workers) > count:
+            self.workers.pop().kill()
         for _ in range(count - len(self.workers)):
             self.work()
         return self.there(count)
