@@ -20,7 +20,7 @@ class SweepRequest(NamedTuple):
             "SPEC NAME=VALUES...",
             completes="spec",
         ),
-    ]
+    ] = ()
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -31,6 +31,28 @@ class SweepRequest(NamedTuple):
         ),
     ] = ()
     zip: Annotated[bool, Option(("--zip",), "The values of one place together, not all combinations.")] = False
+    variants: Annotated[
+        str | None,
+        Option(("--variants",), "A CSV table of variants: a column a parameter, a row a variant.", "FILE"),
+    ] = None
+    store: Annotated[
+        str | None,
+        Option(("--store",), "Keep every row there as it is done; what is there already is not solved again.", "FILE"),
+    ] = None
+    show: Annotated[
+        str | None,
+        Option(("--show",), "Print the last sweep of a store, or the one of that number; solves nothing.", "FILE[:N]"),
+    ] = None
+    shard: Annotated[
+        str | None,
+        Option(("--shard",), "One part of so many, such as 2/8: every eighth variant, from the second on.", "K/N"),
+    ] = None
+    jobs: Annotated[
+        int | None, Option(("--jobs", "-j"), "Processes. Default: one a processor, from eight variants on.", "N")
+    ] = None
+    time_limit_each: Annotated[
+        float | None, Option(("--time-limit",), "Give up on a variant after that long; the others go on.", "SECONDS")
+    ] = None
     samples: Annotated[int | None, Option(("--samples",), "How many of what is drawn at random.", "N")] = None
     seed: Annotated[int | None, Option(("--seed",), "Of what is drawn at random. Default: 0.", "S")] = None
     indices: Annotated[
@@ -55,6 +77,14 @@ class SweepRequest(NamedTuple):
     ] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    dask: Annotated[
+        str | None,
+        Option(
+            ("--dask",),
+            "The scheduler of a Dask cluster whose workers solve the variants; takes heuncli[dask].",
+            "tcp://HOST:PORT",
+        ),
+    ] = None
     units: Annotated[str | None, UNITS] = None
     all: Annotated[bool, Option(("--all",), "Tables show all variants, however many.")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a variant could not be solved.")] = False
