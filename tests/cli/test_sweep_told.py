@@ -243,7 +243,7 @@ def test_words_stand_for_what_is_not_known() -> None:
     lines = text_of(head_of(plan, "N"), rows).splitlines()
     assert [line.split()[1] for line in lines[2:5]] == ["open", "?", "?"]
     assert lines[5].split() == ["4", "does-not-fit:", "joint", "C", "cannot", "be", "closed"]
-    assert any(line.startswith("  open: ") or line.startswith("open: ") for line in lines)
+    assert any(line.startswith(("  open: ", "open: ")) for line in lines)
     text = "".join(told.pieces(head_of(plan, "N"), rows, Telling("csv")))
     reasons = [row["reason"] for row in csv.DictReader(io.StringIO(text))]
     assert reasons[0].startswith("m0 [N]: open") and "horizon" in reasons[1] and "singular" in reasons[2]

@@ -62,7 +62,7 @@ def test_of_a_skew_law_what_the_docstring_says() -> None:
 
 @pytest.mark.parametrize(("law", "n"), [("uniform", 1024), ("lhs", 1024), ("sobol", 256)])
 def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(law: str, n: int) -> None:
-    """Of x y + z, each between 0 and 1: variances 1/48, 1/48, 1/12 of the parameters alone, 1/144 of x and y together."""
+    """Of x y + z, each between 0 and 1: variances 1/48, 1/48, 1/12 of each alone, 1/144 of x and y together."""
     alone, both = np.array([1 / 48, 1 / 48, 1 / 12]), np.array([1 / 144, 1 / 144, 0.0])
     variance = alone.sum() + 1 / 144
     laws = [Drawn(name, law, 0.0, 1.0, "") for name in "xyz"]  # type: ignore[arg-type]
@@ -81,7 +81,7 @@ def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(law: str, n: i
 
 
 def test_the_percentile_interval_is_that_of_the_binomial_law() -> None:
-    """Of 20 draws at most 5 lie below the median in 2.07 % of all samples, at most 6 in 5.77 %: from the 6th to the 15th."""
+    """Of 20 draws at most 5 lie below the median in 2.07 % of samples, at most 6 in 5.77 %: the 6th to the 15th."""
     found = sampled(np.arange(1.0, 21.0))
     assert found is not None
     median = dict(found.percentiles)[50.0]

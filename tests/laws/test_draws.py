@@ -47,9 +47,8 @@ def test_a_normal_beside_them_is_a_coordinate_of_their_plan(seed: int) -> None:
     drawn = draws_of(laws, 128, seed).values
     own = qmc.Sobol(2, seed=np.random.default_rng(seed)).random(128)
     assert np.array_equal(drawn[:, 2], own[:, 1])
-    assert np.allclose(
-        drawn[:, 0], stats.norm(5.0, 2.0).ppf(own[:, 0]), rtol=0.0, atol=20.0 * np.finfo(float).eps * 5.0
-    )
+    theirs = stats.norm(5.0, 2.0).ppf(own[:, 0])
+    assert np.allclose(drawn[:, 0], theirs, rtol=0.0, atol=100.0 * np.finfo(float).eps)
     assert np.array_equal(drawn[:, 1], draws_of([laws[1]], 128, seed).values[:, 0])  # a uniform one is not
 
 
@@ -67,10 +66,8 @@ def test_a_seed_draws_these_numbers_for_ever() -> None:
 
 
 def test_neither_more_samples_nor_other_parameters_change_what_is_drawn() -> None:
-    few = draws_of([law("d", "normal", 100.0, 0.1), law("r", "uniform", 1.0, 2.0)], 10, 3).values
-    more = draws_of(
-        [law("e", "normal", 1.0, 1.0), law("r", "uniform", 1.0, 2.0), law("d", "normal", 100.0, 0.1)], 99, 3
-    )
+    d, e, r = law("d", "normal", 100.0, 0.1), law("e", "normal", 1.0, 1.0), law("r", "uniform", 1.0, 2.0)
+    few, more = draws_of([d, r], 10, 3).values, draws_of([e, r, d], 99, 3)
     assert np.array_equal(few, more.values[:10, [2, 1]])
     assert not np.isclose(more.values[:, 0], (more.values[:, 2] - 100.0) / 0.1 + 1.0).any()  # nor are two the same
     sobol = [law("x", "sobol", 0.0, 1.0), law("y", "normal", 0.0, 1.0)]
