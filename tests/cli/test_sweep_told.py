@@ -281,7 +281,7 @@ def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypat
     monkeypatch.setattr(as_parquet, "GROUP", 1000)
     how = Telling(form, str(tmp_path / f"out.{form}"))
     peaks = []
-    for count in (12_000, 40_000):
+    for count in (24_000, 40_000):
         tracemalloc.start()
         told.tell(head_of(plan, "N"), rows(count), how)
         peaks.append(tracemalloc.get_traced_memory()[1])
