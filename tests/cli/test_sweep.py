@@ -57,7 +57,7 @@ def rows(done: Done) -> list[dict[str, str]]:
 
 REFUSED = {
     "nn=1,2": "nn=1,2: there is no parameter 'nn' to set [no-such-key]\n  hint: did you mean n?",
-    "m=1:2/3 qq": "m=1:2/3 qq: 'qq' is not a unit [unknown-unit]",
+    "m=1:2/3 qq": "m=1:2/3 qq: 'qq' is not a unit [bad-option]",
     "m=1:2/3m": "m=1:2/3m: at scene.yaml:7:15: bodies.bar.mass: m is a length (1.0 m), a mass is wanted here",
     "m=1kg,2mm": "m=1kg,2mm: at scene.yaml:7:15: bodies.bar.mass: m is a length (2mm), a mass is wanted here",
     "m=1,2*k": "m=1,2*k: 'k' is not a parameter [unknown-name]",

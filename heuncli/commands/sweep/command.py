@@ -102,7 +102,8 @@ def given_by(request: SweepRequest, words: Sequence[str]) -> list[GivenAxis]:
     if not words and request.variants is None:
         raise UsageError(Problem("bad-option", "sweep: nothing is varied", hint=f"{HINT}; or --variants FILE"))
     columns = axes_in(request.variants) if request.variants is not None else ()
-    axes, problems = [], []
+    axes: list[GivenAxis] = []
+    problems: list[Problem] = []
     for word in words:
         try:
             axes.append(of_word(word))
