@@ -135,7 +135,7 @@ class Loading:
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
         parameters, given = self.parameters()
-        names = Names.of(self.data)
+        names = self.names()
         scope = Scope(parameters, given=given)
         tables = self.tables(scope)
         in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
@@ -153,7 +153,11 @@ class Loading:
         warnings = tuple(in_order(self.warnings))
         source = self.source
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
-        return resolve(draft.document, meaning)
+        return self.meant(draft.document, meaning)
+
+    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
+        """The scene that the document means."""
+        return resolve(document, meaning)
 
     def reader(self, context: Context) -> Reader:
         """What reads the entries, whose values may refer to the context."""
@@ -162,6 +166,10 @@ class Loading:
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """What of the document breaks a rule."""
         return violations(self.rules, draft)
+
+    def names(self) -> Names:
+        """What is named in the spec."""
+        return Names.of(self.data)
 
     def evaluated(self) -> Parameters:
         """The parameters of the spec."""
