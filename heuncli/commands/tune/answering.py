@@ -7,7 +7,7 @@ from functools import partial
 
 from heuncli.cli import alarm, jobs
 from heuncli.cli.entry import UsageError, contained
-from heuncli.commands.tune.results import Outcome, Reading
+from heuncli.commands.tune.results import Reading, TrialOutcome
 from heuncli.commands.tune.trials import TIME_LIMIT
 from heuncli.errors import HeunError, Problem
 from heuncli.study.ask.measure import NotOneNumber
@@ -25,7 +25,7 @@ class Answering:
         """at_once: how many processes; None: this one."""
         self.asker, self.at_once = asker, at_once
 
-    def own(self) -> Outcome:
+    def own(self) -> TrialOutcome:
         """That of the scene as it is. Raises UsageError where a measure is not one number of it."""
         try:
             study = self.asker.study({})
@@ -37,7 +37,7 @@ class Answering:
             return outcome_of(failed(error))
         return outcome_of(Answer(measures))
 
-    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[Outcome]:
+    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
         """The outcomes of variants, in the form of --set. Raises UsageError where a measure is not one number."""
         at_once = 1 if self.at_once is None else jobs.how_many(self.at_once, len(several))
         work: Callable[[Mapping[str, str]], Answer] = partial(answer_apart if at_once > 1 else answer, self.asker)
@@ -75,7 +75,7 @@ def failed(error: HeunError) -> Answer:
     return Answer(code=problem.code, reason=problem.message)
 
 
-def outcome_of(found: Answer) -> Outcome:
+def outcome_of(found: Answer) -> TrialOutcome:
     """An answer as the search takes it."""
     readings = tuple(Reading(one.value, one.error, one.at, one.word) for one in found.measures)
-    return Outcome(readings, found.code, found.reason, found.warnings)
+    return TrialOutcome(readings, found.code, found.reason, found.warnings)

@@ -15,7 +15,7 @@ from heuncli.cli.target import format_of, require_room
 from heuncli.cli.units import say_what_stays, units
 from heuncli.commands.tune import page
 from heuncli.commands.tune.answering import Answering
-from heuncli.commands.tune.asked import Asked, asked_by, task_of
+from heuncli.commands.tune.asked import AskedTuning, asked_by, task_of
 from heuncli.commands.tune.history import to_csv
 from heuncli.commands.tune.request import FORMATS, TuneRequest
 from heuncli.commands.tune.results import TuneResults
@@ -57,7 +57,7 @@ def main(request: TuneRequest) -> int:
     return leave(request, found)
 
 
-def require_sense(request: TuneRequest, asked: Asked) -> None:
+def require_sense(request: TuneRequest, asked: AskedTuning) -> None:
     """Raise UsageError where options do not go together, or numbers mean nothing."""
     if request.jobs is not None and request.jobs < 1:
         raise UsageError(Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="such as --jobs 2"))
@@ -69,14 +69,14 @@ def require_sense(request: TuneRequest, asked: Asked) -> None:
         raise UsageError(Problem("bad-option", message, hint="name another file"))
 
 
-def recipe_of(request: TuneRequest, asked: Asked) -> Recipe:
+def recipe_of(request: TuneRequest, asked: AskedTuning) -> Recipe:
     """What every variant is made of. Raises UsageError, SpecError."""
     options = Options(tolerance=tolerance(request.tolerance), reduce=not request.no_reduce)
     measures = asked.measures
     return Recipe(asked.path, text_in(asked.path), measures, options, overrides(request.set), request.case)
 
 
-def searched(request: TuneRequest, asked: Asked, asker: Asker) -> Tuning:
+def searched(request: TuneRequest, asked: AskedTuning, asker: Asker) -> Tuning:
     """The search as far as it came. Raises UsageError, AxisError, SpecError; LimitError where nothing was solved."""
     task = task_of(request, asked, asker)
     answering = Answering(asker, request.jobs)

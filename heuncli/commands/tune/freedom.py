@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from heuncli.commands.tune.results import Freedom, Move, Trial
+from heuncli.commands.tune.results import Leeway, Move, Trial
 from heuncli.commands.tune.trials import Trials
 
 HUNDREDTH = 0.01
@@ -24,7 +24,7 @@ MOST_TIMES, LEAST_POWER = 1e20, 0.1  # beyond which nothing is foretold
 STEEP = 0.5  # a rise by a lesser power of the way is a jump
 
 
-def freedoms(trials: Trials, best: Trial) -> tuple[Freedom, ...]:
+def freedoms(trials: Trials, best: Trial) -> tuple[Leeway, ...]:
     """Of each variable. Impure: tries variants."""
     trials.phase = "freedom"
     floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
@@ -33,7 +33,7 @@ def freedoms(trials: Trials, best: Trial) -> tuple[Freedom, ...]:
     for which in range(len(best.place)):
         down, up = (_Side(trials, best, which, way) for way in (-1.0, 1.0))
         wide = down.move(hundredth), up.move(hundredth)
-        found.append(Freedom((down.move(floor), up.move(floor)), wide))
+        found.append(Leeway((down.move(floor), up.move(floor)), wide))
     return tuple(found)
 
 

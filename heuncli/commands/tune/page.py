@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.cli import terminal
-from heuncli.commands.tune.results import Freedom, Move, Reading, TuneResults
+from heuncli.commands.tune.results import Leeway, Move, Reading, TuneResults
 from heuncli.commands.tune.told import TunedScene
 from heuncli.foreign_text import shown
 from heuncli.report.digits import rough, style
@@ -112,7 +112,7 @@ def moves(found: TuneResults, units: Units) -> TextTable:
     return TextTable(MOVES, columns, tuple(rows))
 
 
-def _cells(freedom: Freedom) -> Iterator[str]:
+def _cells(freedom: Leeway) -> Iterator[str]:
     return (_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
 
 
@@ -120,7 +120,8 @@ def _move(one: Move | None) -> str:
     """A way, to two digits, and what ends it."""
     if one is None:
         return "-"
-    return f"{'<' * (one.until == 'less')}{one.by:.2g}{UNTIL.get(one.until, f' ({one.until})')}"
+    by = f"{one.by:.2g}".replace("e-0", "e-")
+    return f"{'<' * (one.until == 'less')}{by}{UNTIL.get(one.until, f' ({one.until})')}"
 
 
 def measures(found: TuneResults, units: Units) -> TextTable:

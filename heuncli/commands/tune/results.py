@@ -16,7 +16,7 @@ DIGITS = 9  # of a variable, beside the width of its interval: a thousandth of w
 Ending = Literal["converged", "evaluations", "time", "infeasible"]
 
 
-class Variable(NamedTuple):
+class TunedVariable(NamedTuple):
     """A parameter that may lie between two bounds, in its unit; own: its value in the spec, None where that is none."""
 
     name: str
@@ -87,7 +87,7 @@ class TuneTask:
     looked for; seed: of what is drawn.
     """
 
-    variables: tuple[Variable, ...]
+    variables: tuple[TunedVariable, ...]
     goal: Goal
     constraints: tuple[Constraint, ...] = ()
     most: int = 400
@@ -104,7 +104,7 @@ class Reading(NamedTuple):
     word: str = ""
 
 
-class Outcome(NamedTuple):
+class TrialOutcome(NamedTuple):
     """What a variant gave: readings of goal and constraints, or the code and the reason why there are none.
 
     warnings: of the run, in sentences.
@@ -122,7 +122,7 @@ class Trial(NamedTuple):
     number: int
     phase: str
     place: tuple[float, ...]
-    outcome: Outcome
+    outcome: TrialOutcome
 
     @property
     def solved(self) -> bool:
@@ -167,7 +167,7 @@ class Move(NamedTuple):
     until: str
 
 
-class Freedom(NamedTuple):
+class Leeway(NamedTuple):
     """How far one variable may move, down and up: until the goal is worse by the floor, and by a hundredth of it."""
 
     of_floor: tuple[Move | None, Move | None] = (None, None)
@@ -185,14 +185,14 @@ class TuneResults:
     """
 
     task: TuneTask
-    own: Outcome
+    own: TrialOutcome
     history: tuple[Trial, ...]
     best: Trial | None
     feasible: bool
     ending: Ending
     gain: float | None
     floor: float
-    freedoms: tuple[Freedom, ...]
+    freedoms: tuple[Leeway, ...]
     active: tuple[bool, ...]
     scales: tuple[float, ...]
     failures: Mapping[str, int]
@@ -218,6 +218,6 @@ class TuneResults:
         return "low" if place <= 0.0 else "high" if place >= 1.0 else ""
 
 
-def texts_at(variables: tuple[Variable, ...], place: tuple[float, ...]) -> dict[str, str]:
+def texts_at(variables: tuple[TunedVariable, ...], place: tuple[float, ...]) -> dict[str, str]:
     """The values at a place, as --set takes them."""
     return {variable.name: variable.text(x) for variable, x in zip(variables, place, strict=True)}
