@@ -164,7 +164,7 @@ def test_a_jump() -> None:
     found = tuned(lambda x: float((x[0] - 0.3) ** 2 + (x[1] - 0.6) ** 2 + (5.0 if x[0] > 0.25 else 0.0)) + 1.0)
     assert found.ending == "converged" and best_of(found) == pytest.approx(1.0025, abs=1e-5)
     up = found.freedoms[0].of_hundredth[1]
-    assert up is not None and (up.by, up.until) == (0.0, "jump")
+    assert up is not None and up.by < 1e-6 and up.until == "jump"
 
 
 @pytest.mark.parametrize("noise", [1e-3, 1e-5])
