@@ -1,0 +1,221 @@
+"""The course of a measure over an interval: what is known of it at some places, and what lies between these.
+
+    g(x) = measure(x) - value       known at x within an error e, which its run states
+
+Between two neighbours g is taken for the cubic through them and one more on either side. How far that may be off is
+seen from the parabolas that leave one of the four out, from the corner at which the lines through either two would meet
+(a measure such as the largest of several bends there), and from how far off it was wherever it was asked since.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left, insort
+from collections.abc import Callable, Iterator
+from itertools import pairwise
+
+import numpy as np
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+
+EPS = float(np.finfo(float).eps)
+ROUNDING = 8.0 * EPS  # of the measure and the value: what some sums of a run's last step leave
+APART = 0.25  # of an interval: what stands nearer to another place tells of the noise, not of the course
+GRID = np.linspace(0.0, 1.0, 35)[1:-1]  # places in an interval, of its width
+UNSEEN = 1e-3  # of the range of the four: what a course may do between places of the scan beside a cubic
+UNEVEN = 0.25  # of the spacing: by so much places of the scan are shifted at most, so that no wave hides in their beat
+GOLDEN = 0.5 * (5.0**0.5 - 1.0)
+DISTRUST = 1.25
+MOST_DISTRUST = 16.0
+
+
+class Sample(NamedTuple):
+    """What is known at a place: how far the measure lies above the value, and its error.
+
+    gap: None where there is none, and why stands for a reason: its code and a sentence.
+    """
+
+    x: float
+    gap: float | None
+    error: float = 0.0
+    why: tuple[str, str] = ("", "")
+
+    @property
+    def side(self) -> int | None:
+        """1 above the value, -1 below it, 0 not told from it; None where there is no measure."""
+        if self.gap is None:
+            return None
+        return 0 if abs(self.gap) <= self.error else 1 if self.gap > 0.0 else -1
+
+
+class Between(NamedTuple):
+    """What is expected at places between two neighbours: g (n,), and by how much it may be off (n,)."""
+
+    places: Array
+    gaps: Array
+    off: Array
+
+
+class SpentError(Exception):
+    """As many places have been asked as may be."""
+
+
+class Course:
+    """What is known of g over an interval; asks for more.
+
+    jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,
+    nearer together than places are told apart.
+    """
+
+    def __init__(self, ask: Callable[[float], Sample], low: float, high: float, count: int, most: int) -> None:
+        """ask: what is known at a place; count: places of the scan, evenly spaced; most: of all that may be asked."""
+        self._ask, self._most = ask, most
+        self.low, self.high = low, high
+        self.finest = max(1e-10 * (high - low), 4.0 * EPS * max(abs(low), abs(high)))
+        self.samples: list[Sample] = []
+        self.jumps: set[tuple[float, float]] = set()
+        self.steep: set[tuple[float, float]] = set()
+        self.distrust = DISTRUST
+        self._scan = uneven(low, high, count)
+        self.spacing = max(b - a for a, b in pairwise(self._scan))
+
+    def scan(self) -> None:
+        """Look at the places of the scan: the ends first, so that a scan cut short has them."""
+        for x in (self._scan[0], self._scan[-1], *self._scan[1:-1]):
+            self.at(x)
+
+    def at(self, x: float) -> Sample:
+        """What is known at a place. Raises SpentError."""
+        place = bisect_left(self.samples, x, key=lambda sample: sample.x)
+        if place < len(self.samples) and self.samples[place].x == x:
+            return self.samples[place]
+        if len(self.samples) >= self._most:
+            raise SpentError
+        found = self._ask(x)
+        insort(self.samples, found, key=lambda sample: sample.x)
+        return found
+
+    def look(self, x: float) -> Sample:
+        """What is known at a place between two neighbours, and how far it is from what was expected there."""
+        i = bisect_left(self.samples, x, key=lambda sample: sample.x) - 1
+        expected = self.between(i) if self.samples[i].gap is not None and self.samples[i + 1].gap is not None else None
+        found = self.at(x)
+        if expected is not None and found.gap is not None:
+            gap, off = (float(np.interp(x, expected.places, values)) for values in (expected.gaps, expected.off))
+            missed = abs(found.gap - gap) - found.error
+            if missed > off:
+                self.distrust = min(2.0 * self.distrust * (missed / off if off else MOST_DISTRUST), MOST_DISTRUST)
+        return found
+
+    def pairs(self) -> Iterator[tuple[int, Sample, Sample]]:
+        """All neighbours, with the number of the first."""
+        for i in range(len(self.samples) - 1):
+            yield i, self.samples[i], self.samples[i + 1]
+
+    def parted(self, i: int) -> bool:
+        """Whether the course does not go on from a sample to the next: one is not solved, or it jumps."""
+        one, other = self.samples[i], self.samples[i + 1]
+        return one.gap is None or other.gap is None or (one.x, other.x) in self.jumps
+
+    @property
+    def range(self) -> float:
+        """How far apart the least and the greatest lie that were found."""
+        known = [sample.gap for sample in self.samples if sample.gap is not None]
+        return max(known) - min(known) if known else 0.0
+
+    def between(self, i: int) -> Between:
+        """What is expected between a sample and the next, of one stretch."""
+        one, other = self.samples[i], self.samples[i + 1]
+        left, right = self.beside(i, -1), self.beside(i, 1)
+        whole = [*reversed(left[: 1 if right else 2]), one, other, *right[: 1 if left else 2]]
+        x = one.x + GRID * (other.x - one.x)
+        if left and right:
+            x = np.sort(np.append(x, meeting(left[0], one, other, right[0])))
+        expected = polynomial(whole, x)
+        if len(whole) == 2:
+            return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))))
+        parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
+        others = [polynomial(part, x) for part in parts]
+        if left and right:
+            others.append(corner([left[0], one], [other, right[0]], x, expected))
+        off = np.max([np.abs(each - expected) for each in others], axis=0)
+        known = [_gap(sample) for sample in whole]
+        steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
+        return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps))
+
+    def beside(self, i: int, way: int) -> list[Sample]:
+        """Up to two samples of the stretch on one side of a sample and its next, far enough apart; the nearest first."""
+        width = self.samples[i + 1].x - self.samples[i].x
+        found: list[Sample] = []
+        k = i if way < 0 else i + 1
+        from_ = self.samples[k].x
+        while len(found) < 2 and 0 <= k + way < len(self.samples) and not self.parted(k + min(way, 0)):
+            k += way
+            if abs(self.samples[k].x - from_) >= APART * width:
+                found.append(self.samples[k])
+                from_ = self.samples[k].x
+        return found
+
+
+def uneven(low: float, high: float, count: int) -> list[float]:
+    """Places from low to high, both among them, at distances that have no common measure."""
+    shifts = [UNEVEN * (2.0 * (k * GOLDEN % 1.0) - 1.0) for k in range(count)]
+    shifts[0] = shifts[-1] = 0.0
+    places = [low + (high - low) * (k + shift) / (count - 1) for k, shift in enumerate(shifts)]
+    return [low, *places[1:-1], high]
+
+
+def meeting(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
+    """Where the line through two samples meets that through two others; within the ends between which it is looked for."""
+    before, after = ((_gap(b) - _gap(a)) / (b.x - a.x) for a, b in ((first, one), (other, last)))
+    if before == after:
+        return 0.5 * (one.x + other.x)
+    x = (_gap(other) - _gap(one) + before * one.x - after * other.x) / (before - after)
+    return min(max(x, one.x), other.x)
+
+
+def corner(left: list[Sample], right: list[Sample], x: Array, smooth: Array) -> Array:
+    """The lines through two samples on the left and two on the right, as far as they bend the way both ends do."""
+    before, after = polynomial(left, x), polynomial(right, x)
+    line = polynomial([left[-1], right[0]], x)
+    if (np.minimum(before, after) >= line).all():
+        return np.minimum(before, after)
+    return np.maximum(before, after) if (np.maximum(before, after) <= line).all() else smooth
+
+
+def polynomial(samples: list[Sample], x: Array) -> Array:
+    """The polynomial through some samples at some places, by Newton's divided differences."""
+    nodes, heads = _newton(samples)
+    value = np.full_like(x, heads[-1])
+    for node, head in zip(reversed(nodes[:-1]), reversed(heads[:-1]), strict=True):
+        value = value * (x - node) + head
+    return value
+
+
+def slope(samples: list[Sample], x: float) -> float:
+    """Its derivative at a place."""
+    nodes, heads = _newton(samples)
+    value, derivative = heads[-1], 0.0
+    for node, head in zip(reversed(nodes[:-1]), reversed(heads[:-1]), strict=True):
+        derivative = derivative * (x - node) + value
+        value = value * (x - node) + head
+    return derivative
+
+
+def _gap(sample: Sample) -> float:
+    return sample.gap or 0.0
+
+
+def _size(sample: Sample) -> float:
+    return abs(_gap(sample))
+
+
+def _newton(samples: list[Sample]) -> tuple[list[float], list[float]]:
+    """Nodes and divided differences."""
+    nodes = [sample.x for sample in samples]
+    row = [_gap(sample) for sample in samples]
+    heads = [row[0]]
+    for order in range(1, len(nodes)):
+        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(zip(row, row[1:], strict=False))]
+        heads.append(row[0])
+    return nodes, heads

@@ -1,0 +1,186 @@
+"""The places at which a course meets its value, read from its samples, and how well they are known.
+
+    |x - x0| <= E / |g'|            E: the error of the measure and what is left of g at the place [that of g]
+
+with the slope g' from the neighbours that are well told from the value, less what it may be off by; never further than
+the next neighbours that lie on one side for certain.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from itertools import groupby
+
+from heuncli.commands.find.course import APART, Course, Sample, slope
+from heuncli.commands.find.results import Crossing, CourseJump, Met, MetEdge, Touch, UnsolvedStretch
+
+CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
+SURE = 0.5  # of a slope: what it may be off by
+
+
+class SideGroup(list[Sample]):
+    """Neighbouring samples of one side."""
+
+    @property
+    def side(self) -> int | None:
+        """Their side."""
+        return self[0].side
+
+
+def groups(course: Course) -> list[SideGroup]:
+    """The samples in groups of one side."""
+    return [SideGroup(members) for _, members in groupby(course.samples, key=lambda sample: sample.side)]
+
+
+def meetings(course: Course) -> Iterator[Crossing | Touch | CourseJump]:
+    """Where the course meets its value or jumps across it."""
+    found = groups(course)
+    for k, group in enumerate(found):
+        before = found[k - 1].side if k else None
+        after = found[k + 1].side if k + 1 < len(found) else None
+        if group.side == 0:
+            yield met_by(course, group, before, after)
+        elif group.side and before and before == -group.side:
+            one, other = found[k - 1][-1], group[0]
+            if (one.x, other.x) in course.jumps:
+                yield CourseJump(one, other)
+            elif (one.x, other.x) in course.steep:
+                yield Crossing(min(one, other, key=_size), other.x - one.x, group.side)
+
+
+def met_by(course: Course, group: SideGroup, before: int | None, after: int | None) -> Crossing | Touch:
+    """What samples are that are not told from the value; before, after: the sides beside them."""
+    best = min(group, key=_size)
+    if before and before == after:
+        return Touch(best, group[0].x, group[-1].x, before)
+    if not before and not after:
+        return Touch(best, group[0].x, group[-1].x, 0)
+    error, flat = reach(course, group, best)
+    return Crossing(best, error, after if before and after else 0, flat)
+
+
+def reach(course: Course, group: SideGroup, best: Sample) -> tuple[float, bool]:
+    """How far the true place may be from a sample, and whether the slope there is too small to tell."""
+    size = max(sample.error for sample in group) + _size(best)
+    outer = [neighbours(course, group, way, 0.0)[:1] for way in (-1, 1)]
+    limit = max(abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True))
+    found = slope_at(course, group, best, size)
+    if found is None:
+        return limit, True
+    steep, bend = found
+    under = steep * steep - 4.0 * bend * size
+    if steep <= 0.0 or under <= 0.0:
+        return limit, True
+    return min(limit, 2.0 * size / (steep + math.sqrt(under))), False
+
+
+def slope_at(course: Course, group: SideGroup, best: Sample, size: float) -> tuple[float, float] | None:
+    """The least that |g'| may be at a sample, and |g''|/2; None where too little is known."""
+    left, right = (neighbours(course, group, way, CLEAR * size) for way in (-1, 1))
+    whole = [*reversed(left), best, *right]
+    if len(whole) < 3:
+        return None
+    # the parabola through the nearest, and the cubics with one more: what they differ by is what the slope may be off by
+    near = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
+    wider = [sorted({*near, more}) for more in whole if more not in near]
+    slopes = [slope(sorted(each), best.x) for each in (near, *wider)]
+    noise = max((sample.error + best.error) / abs(sample.x - best.x) for sample in near if sample is not best)
+    doubt = noise + max((abs(each - slopes[0]) for each in slopes[1:]), default=0.0)
+    a, b, c = sorted(near)
+    bend = ((_gap(c) - _gap(b)) / (c.x - b.x) - (_gap(b) - _gap(a)) / (b.x - a.x)) / (c.x - a.x)
+    return abs(slopes[0]) - doubt, abs(bend)
+
+
+def neighbours(course: Course, group: SideGroup, way: int, clear: float) -> list[Sample]:
+    """Up to two samples beside a group, the nearest first, of its stretch: off the value by more than `clear`."""
+    samples = course.samples
+    k = samples.index(group[0] if way < 0 else group[-1])
+    found: list[Sample] = []
+    while len(found) < 2 and 0 <= k + way < len(samples) and not course.parted(k + min(way, 0)):
+        k += way
+        sample = samples[k]
+        apart = not found or abs(sample.x - found[0].x) >= APART * abs(found[0].x - group[0].x)
+        if sample.side and _size(sample) >= clear and apart:
+            found.append(sample)
+    return found
+
+
+def doubtful(course: Course) -> Iterator[tuple[Sample, Sample]]:
+    """Crossings whose slope is not well known, with a neighbour on another side, to be asked between."""
+    found_groups = groups(course)
+    for k, group in enumerate(found_groups):
+        around = {found_groups[j].side for j in (k - 1, k + 1) if 0 <= j < len(found_groups)}
+        if group.side != 0 or len(around) < 2:
+            continue
+        best = min(group, key=_size)
+        size = max(sample.error for sample in group) + _size(best)
+        found = slope_at(course, group, best, size)
+        if found is not None and found[0] > 0.0 and found[0] ** 2 > 4.0 * found[1] * size / SURE:
+            continue
+        for way, end in ((-1, group[0]), (1, group[-1])):
+            for outer in neighbours(course, group, way, 0.0)[:1]:
+                yield end, outer
+
+
+def unsolved(course: Course) -> Iterator[UnsolvedStretch]:
+    """Where there is no measure."""
+    samples = course.samples
+    for known, members in groupby(range(len(samples)), key=lambda i: samples[i].gap is not None):
+        if known:
+            continue
+        places = list(members)
+        low = samples[places[0] - 1].x if places[0] else course.low
+        high = samples[places[-1] + 1].x if places[-1] + 1 < len(samples) else course.high
+        reasons = [samples[i].why for i in places]
+        code, reason = max(dict.fromkeys(reasons), key=lambda why: sum(each[0] == why[0] for each in reasons))
+        yield UnsolvedStretch(low, high, code, reason, len(places))
+
+
+def met(course: Course, wanted: int, *, equal: bool) -> Iterator[Met]:
+    """The stretches in which the course lies on a side; equal: the value itself meets the condition, too."""
+    found = groups(course)
+    open_: MetEdge | None = None
+    for k, group in enumerate(found):
+        if group.side != wanted:
+            continue
+        before, after = (found[i] if 0 <= i < len(found) else None for i in (k - 1, k + 1))
+        low, high = edge(course, group[0], before), edge(course, group[-1], after)
+        start = open_ or low
+        beyond = found[k + 2].side if k + 2 < len(found) else None
+        open_ = start if equal and high.kind == "touch" and beyond == wanted else None
+        if open_ is None:
+            yield Met(start, high)
+
+
+def edge(course: Course, last: Sample, beside: SideGroup | None) -> MetEdge:
+    """Where a stretch ends whose last sample that is."""
+    if beside is None:
+        return MetEdge(last.x, 0.0, "end")
+    if beside.side is None:
+        return MetEdge(last.x, 0.0, "unsolved")
+    if beside.side:
+        pair = tuple(sorted((last.x, (beside[0] if beside[0].x > last.x else beside[-1]).x)))
+        return MetEdge(last.x, pair[1] - pair[0], "crossing" if pair in course.steep else "jump")
+    best = min(beside, key=_size)
+    if at_end(course, beside):
+        return MetEdge((beside[-1] if best.x > last.x else beside[0]).x, 0.0, "end")
+    found = next(each for each in meetings(course) if not isinstance(each, CourseJump) and each.sample is best)
+    if isinstance(found, Touch):
+        return MetEdge(best.x, found.high - found.low, "touch")
+    return MetEdge(best.x, found.error, "crossing")
+
+
+def at_end(course: Course, group: SideGroup) -> bool:
+    """Whether what is not told from the value lies at an end of the interval, or of what is solved."""
+    samples = course.samples
+    first, last = samples.index(group[0]), samples.index(group[-1])
+    return first == 0 or last == len(samples) - 1 or samples[first - 1].gap is None or samples[last + 1].gap is None
+
+
+def _size(sample: Sample) -> float:
+    return abs(_gap(sample))
+
+
+def _gap(sample: Sample) -> float:
+    return sample.gap or 0.0

@@ -1,0 +1,87 @@
+"""What is found of a measure over an interval: where it meets its value, jumps across it, comes near it, or is not."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from heuncli.commands.find.course import Sample
+from heuncli.named_tuples import NamedTuple
+
+EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved"]
+
+
+class Crossing(NamedTuple):
+    """Where the measure passes its value, within an error; sample: the variant there.
+
+    way: 1 it rises through it, -1 it falls; 0: at an end of what is known, where only one side is; flat: its slope there
+    is below what its error makes of it, and the error of the place is that of the neighbours that are told from it.
+    """
+
+    sample: Sample
+    error: float
+    way: int
+    flat: bool = False
+
+
+class Touch(NamedTuple):
+    """Where the measure is not told from its value and lies on one side of it around: at its best, from low to high.
+
+    side: on which it lies around; 0: it is not told from the value wherever it is known.
+    """
+
+    sample: Sample
+    low: float
+    high: float
+    side: int
+
+
+class CourseJump(NamedTuple):
+    """Neighbours between which the measure jumps across its value."""
+
+    before: Sample
+    after: Sample
+
+
+class UnsolvedStretch(NamedTuple):
+    """Where there is no measure, between the last places at which there is one: why, and how many variants tell it."""
+
+    low: float
+    high: float
+    code: str
+    reason: str
+    variants: int
+
+
+class MetEdge(NamedTuple):
+    """An end of where a condition is met: its place, within an error, and what it is."""
+
+    x: float
+    error: float
+    kind: EdgeKind
+
+
+class Met(NamedTuple):
+    """A stretch in which an inequality is met."""
+
+    low: MetEdge
+    high: MetEdge
+
+
+class CourseFindings(NamedTuple):
+    """All that was found, in the order of the interval.
+
+    least, greatest: of what is known, refined where nothing is met (refined); spacing: of the scan; complete: whether
+    all was asked that was wanted.
+    """
+
+    crossings: tuple[Crossing, ...]
+    touches: tuple[Touch, ...]
+    jumps: tuple[CourseJump, ...]
+    unsolved: tuple[UnsolvedStretch, ...]
+    met: tuple[Met, ...]
+    least: Sample | None
+    greatest: Sample | None
+    refined: bool
+    samples: tuple[Sample, ...]
+    spacing: float
+    complete: bool

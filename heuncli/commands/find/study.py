@@ -1,0 +1,54 @@
+"""Where a function of one number meets a value: all crossings of an interval that its course gives away."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from heuncli.commands.find.course import Course, Sample, SpentError
+from heuncli.commands.find.places import doubtful, meetings, met, unsolved
+from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, Touch
+from heuncli.commands.find.search import refine_extreme, search
+from heuncli.named_tuples import NamedTuple
+
+HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
+
+
+class Wanted(NamedTuple):
+    """Which places are looked for: on which side of the value (1 above, -1 below; 0: at it), and whether at it, too."""
+
+    side: int
+    equal: bool
+
+
+def look(
+    ask: Callable[[float], Sample], low: float, high: float, wanted: Wanted, *, count: int, most: int
+) -> CourseFindings:
+    """What is found between low and high; count: places of the scan, most: that may be asked in all."""
+    course = Course(ask, low, high, count, most)
+    complete, refined = True, False
+    try:
+        search(course)
+        for _ in range(HALVINGS):
+            for one, other in list(doubtful(course)):
+                course.at(0.5 * (one.x + other.x))
+        if not any(meetings(course)) and any(sample.gap is not None for sample in course.samples):
+            for way in (-1, 1):
+                refine_extreme(course, way)
+            refined = True
+    except SpentError:
+        complete = False
+    found = list(meetings(course))
+    known = [sample for sample in course.samples if sample.gap is not None]
+    return CourseFindings(
+        crossings=tuple(each for each in found if isinstance(each, Crossing)),
+        touches=tuple(each for each in found if isinstance(each, Touch)),
+        jumps=tuple(each for each in found if isinstance(each, CourseJump)),
+        unsolved=tuple(unsolved(course)),
+        met=tuple(met(course, wanted.side, equal=wanted.equal)) if wanted.side else (),
+        least=min(known, key=lambda sample: sample.gap or 0.0, default=None),
+        greatest=max(known, key=lambda sample: sample.gap or 0.0, default=None),
+        refined=refined,
+        samples=tuple(course.samples),
+        spacing=course.spacing,
+        complete=complete,
+    )

@@ -1,0 +1,35 @@
+"""Answers of variants, each asked for once: for what looks for a value by itself, and counts its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from heuncli.variants.asking import Answer, Asker
+
+
+class AnswersOnce:
+    """The answers of an asker by their values: what was asked for before is not solved again."""
+
+    def __init__(self, asker: Asker) -> None:
+        self.asker = asker
+        self._known: dict[tuple[tuple[str, str], ...], Answer] = {}
+
+    @property
+    def runs(self) -> int:
+        """How many variants have been asked for, those that could not be solved among them."""
+        return len(self._known)
+
+    def of(self, values: Mapping[str, str]) -> Answer:
+        """The answer of a variant; values: by name, in the form of `--set`."""
+        key = tuple(sorted(values.items()))
+        if key not in self._known:
+            self._known[key] = self.asker.answer(values)
+        return self._known[key]
+
+    def warnings(self) -> dict[str, int]:
+        """What the variants warned of, and how many of them."""
+        found: dict[str, int] = {}
+        for answer in self._known.values():
+            for text in answer.warnings:
+                found[text] = found.get(text, 0) + 1
+        return found
