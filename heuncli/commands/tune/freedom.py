@@ -64,6 +64,8 @@ class _Side:
         low, high = self._around(amount)
         if low == self.room:
             return Move(self._in_unit(low), "bound")
+        if high == math.inf:
+            return Move(self._in_unit(low), "worse" if self.gone[low] >= NEAR * amount else "more")
         if high in self.why:
             return Move(self._in_unit(low), self.why[high])
         if self._jumps(low, high, amount):

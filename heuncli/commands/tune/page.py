@@ -19,7 +19,8 @@ MOVES = "MOVES  how far a variable may move alone, down and up, before the goal 
 MEASURES = "MEASURES  the goal first; left: to the limit, below 0 where it is passed"
 PASTED = "Its numbers, to the bit:"
 AT_BOUND = {"low": "lower bound", "high": "upper bound", "": ""}
-UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": ""}
+UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": "", "more": ""}
+BOUND_OF = {"less": "<", "more": ">"}
 LEFT: Align = "left"
 
 
@@ -46,6 +47,8 @@ def heading(found: TuneResults, scene: TunedScene, units: Units) -> Iterator[tup
     yield "", outcome(found, units)
     if not found.feasible:
         yield "", nearest(found, units)
+    if found.own_is_better:
+        yield "", "as it is, outside of the bounds, it is better"
     yield "", f"{len(found.history)} variants{unsolved(found)}"
 
 
@@ -121,7 +124,7 @@ def _move(one: Move | None) -> str:
     if one is None:
         return "-"
     by = f"{one.by:.2g}".replace("e-0", "e-")
-    return f"{'<' * (one.until == 'less')}{by}{UNTIL.get(one.until, f' ({one.until})')}"
+    return f"{BOUND_OF.get(one.until, '')}{by}{UNTIL.get(one.until, f' ({one.until})')}"
 
 
 def measures(found: TuneResults, units: Units) -> TextTable:

@@ -160,7 +160,8 @@ UNKNOWN = {
 class Move(NamedTuple):
     """How far a variable may move to one side before the goal is worse by some amount.
 
-    by: in its unit; until: `worse`, `bound`, `jump`, a constraint's words, a code; `less`: it is less than that.
+    by: in its unit; until: what ends the way, `worse`, `bound`, `jump`, a constraint's words or a code; or `less` and
+    `more`, where it is less or more than that.
     """
 
     by: float
@@ -202,6 +203,15 @@ class TuneResults:
         """The values of the best variant, as --set takes them."""
         assert self.best is not None
         return texts_at(self.task.variables, self.best.place)
+
+    @property
+    def own_is_better(self) -> bool:
+        """Whether the scene as it is keeps all constraints, and is better than the best by more than the floor."""
+        assert self.best is not None
+        own = Trial(0, "", (), self.own)
+        if not own.solved or not all(map(Constraint.met, self.task.constraints, own.kept_to)):
+            return False
+        return not self.feasible or self.task.goal.sign * (self.best.goal - own.goal) > self.floor
 
     @property
     def nearest_unmet(self) -> int | None:
