@@ -9,14 +9,15 @@ LARGE, SMALL = 1e10, 1e-4  # beyond these with an exponent
 
 
 def with_digits(value: float, error: float) -> str:
-    """The number, its last digit that of the error's first; without an error to MOST digits."""
+    """The number, its last digit that of the error's first; without an error as many of MOST digits as it has."""
     if not math.isfinite(value):
         return "unbounded"
     if value == 0.0:
         return "0"
+    if error <= 0.0:
+        return f"{value:.{MOST}g}"
     lead = math.floor(math.log10(abs(value)))
-    last = math.floor(math.log10(error)) if error > 0.0 else lead - MOST + 1
-    last = min(max(last, lead - MOST + 1), lead)
+    last = min(max(math.floor(math.log10(error)), lead - MOST + 1), lead)
     if not SMALL <= abs(value) < LARGE or last > 0:
         return f"{value:.{lead - last}e}"
     return f"{value:.{-last}f}"

@@ -110,7 +110,9 @@ def require_some(found: CourseFindings) -> None:
     if found.least is None:
         stretch = found.unsolved[0]
         message = f"the measure is known in none of the {len(found.samples)} variants: {stretch.reason}"
-        raise SolveError(Problem(stretch.code, message, hint="another interval; heun run --set tells more of one variant"))
+        raise SolveError(
+            Problem(stretch.code, message, hint="another interval; heun run --set tells more of one variant")
+        )
 
 
 def in_unit(shown: Units, condition: Condition) -> Units:

@@ -24,8 +24,10 @@ from heuncli.variants.axes import Interval
 from heuncli.version import VERSION
 
 WAYS = {1: "rises", -1: "falls", 0: "at the end"}
-SCAN = "places {} apart at most were looked at, and more where their course asks for it: two crossings, or a peak, nearer "\
-    "together than that may be missed where nothing beside them tells of it"
+SCAN = (
+    "a scan of {} at most {} apart, and more where the course beside them asks for it; crossings nearer together than "
+    "that may be missed where nothing beside them tells of them"
+)
 ENDED = "ended after {}: there may be more, and what stands here may be unfinished (--evaluations)"
 CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "measure_unit", "word", "reason")
 
@@ -65,11 +67,11 @@ def heading(page: FoundPage) -> list[tuple[str, str]]:
     interval, condition, found = page.interval, page.condition, page.found
     value = page.measure(0.0, 0.0)
     ends = f"{interval.low:.10g} to {interval.high:.10g} {interval.unit}".rstrip()
-    runs = f"{count(len(found.samples), 'variant')}, a scan of {page.scan} among them: "
+    scan = SCAN.format(page.scan, f"{found.spacing:.4g} {interval.unit}".rstrip())
     return [
         ("heun", f"{VERSION}  {page.title}"),
         ("find", f"{condition.text} {condition.relation} {value}, {interval.name} from {ends}"),
-        ("runs", runs + SCAN.format(f"{found.spacing:.4g} {interval.unit}".rstrip())),
+        ("runs", f"{count(len(found.samples), 'variant')}: {scan}"),
     ]
 
 

@@ -64,7 +64,9 @@ def reach(course: Course, group: SideGroup, best: Sample) -> tuple[float, bool]:
     """How far the true place may be from a sample, and whether the slope there is too small to tell."""
     size = max(sample.error for sample in group) + _size(best)
     outer = [neighbours(course, group, way, 0.0)[:1] for way in (-1, 1)]
-    limit = max(abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True))
+    limit = max(
+        abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True)
+    )
     found = slope_at(course, group, best, size)
     if found is None:
         return limit, True

@@ -26,7 +26,9 @@ class FindRequest(NamedTuple):
     scan: Annotated[
         int, Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N")
     ] = 7
-    evaluations: Annotated[int, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")] = 300
+    evaluations: Annotated[int, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")] = (
+        300
+    )
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None

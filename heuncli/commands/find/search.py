@@ -53,7 +53,9 @@ def crossed(course: Course) -> Iterator[int]:
 def widest(course: Course, given_up: set[tuple[float, float]]) -> int | None:
     """The widest two neighbours between which it is not certain what happens; None: there are none."""
     found = [
-        (other.x - one.x, -i) for i, one, other in course.pairs() if (one.x, other.x) not in given_up and unsure(course, i)
+        (other.x - one.x, -i)
+        for i, one, other in course.pairs()
+        if (one.x, other.x) not in given_up and unsure(course, i)
     ]
     return -max(found)[1] if found else None
 
@@ -97,7 +99,13 @@ def close_in(course: Course, i: int) -> None:
     one, other = course.samples[i], course.samples[i + 1]
     failed = 0
     while other.x - one.x > course.finest:
-        x = 0.5 * (one.x + other.x) if failed > 1 else beyond(course, one, other) if failed else root(course, one, other)
+        x = (
+            0.5 * (one.x + other.x)
+            if failed > 1
+            else beyond(course, one, other)
+            if failed
+            else root(course, one, other)
+        )
         best = min(abs(one.gap or 0.0), abs(other.gap or 0.0))
         found = course.look(x)
         if found.gap is None or found.side == 0:
