@@ -3,8 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
 from heuncli.variants.asking import Answer, Asker
+
+# why there is no measure, by the word that stands for it
+REASONS: Mapping[str, str] = MappingProxyType(
+    {
+        "open": "open: the laws of rigid bodies do not give it (redundant supports)",
+        "unknown": "not known: beside a singular pose",
+        "beyond": "beyond the run's horizon nothing is claimed",
+    }
+)
 
 
 class AnswersOnce:

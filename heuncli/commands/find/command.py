@@ -7,10 +7,11 @@ from collections.abc import Callable
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit, say
-from heuncli.cli.solving import overrides, tolerance, warn
+from heuncli.cli.output import emit
+from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
+from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.find.condition import Condition, condition_of, parsed
 from heuncli.commands.find.course import ROUNDING, Sample
 from heuncli.commands.find.page import FORMS, FoundPage
@@ -25,17 +26,11 @@ from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
-from heuncli.variants.once import AnswersOnce
+from heuncli.variants.once import REASONS, AnswersOnce
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 LEAST_SCAN = 4  # places: fewer tell of no course
 MOST_SCAN = 100_000
-MORE = "--scan and --evaluations look at more of it"
-REASONS = {
-    "open": "open: the laws of rigid bodies do not give it (redundant supports)",
-    "unknown": "not known: beside a singular pose",
-    "beyond": "beyond the run's horizon nothing is claimed",
-}
 
 
 def main(request: FindRequest) -> int:
@@ -61,7 +56,7 @@ def main(request: FindRequest) -> int:
     page = FoundPage(asker.spec.title, condition, interval, found, request.scan, request.evaluations, own)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
-    tell_warnings(asker.spec, once, request.quiet)
+    warn_of_variants(asker.spec, once, request.quiet)
     return int(request.strict and (not is_met(found, condition) or bool(found.unsolved)))
 
 
@@ -128,10 +123,3 @@ def is_met(found: CourseFindings, condition: Condition) -> bool:
     if SIDES[condition.relation]:
         return bool(found.met) or ("=" in condition.relation and bool(found.crossings or found.touches))
     return bool(found.crossings or found.touches)
-
-
-def tell_warnings(spec: Spec, once: AnswersOnce, quiet: bool) -> None:
-    """What reading and the variants warn of, once each."""
-    warn(spec, None, quiet)
-    for text, variants in ({} if quiet else once.warnings()).items():
-        say(f"warning: heun: {text} (in {variants} of {once.runs} variants)")

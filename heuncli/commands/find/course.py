@@ -50,7 +50,7 @@ class Sample(NamedTuple):
 
 
 class Between(NamedTuple):
-    """What is expected at places between two neighbours: g (n,), and by how much it may be off (n,) beside the noise."""
+    """What is expected at places between two neighbours: g (n,), by how much it may be off (n,), and the noise."""
 
     places: Array
     gaps: Array
@@ -98,7 +98,7 @@ class Course:
         return found
 
     def look(self, x: float) -> Sample:
-        """What is known at a place between two neighbours of a stretch; it is remembered how far off it was expected."""
+        """What is known at a place between two neighbours of a stretch; how far off it was expected is remembered."""
         i = bisect_left(self.samples, x, key=lambda sample: sample.x) - 1
         expected = self.between(i, x)
         found = self.at(x)
@@ -147,7 +147,7 @@ class Course:
         return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
 
     def beside(self, i: int, way: int) -> list[Sample]:
-        """Up to two samples of the stretch on one side of a sample and its next, far enough apart; the nearest first."""
+        """Up to two samples of the stretch before a sample (way -1) or behind its next (1), apart; the nearest first."""
         width = self.samples[i + 1].x - self.samples[i].x
         found: list[Sample] = []
         k = i if way < 0 else i + 1
@@ -169,7 +169,7 @@ def uneven(low: float, high: float, count: int) -> list[float]:
 
 
 def meeting(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
-    """Where the line through two samples meets that through two others; within the ends between which it is looked for."""
+    """Where the line through two samples meets that through two others, between the two in the middle."""
     before, after = ((_gap(b) - _gap(a)) / (b.x - a.x) for a, b in ((first, one), (other, last)))
     if before == after:
         return 0.5 * (one.x + other.x)
@@ -219,6 +219,6 @@ def _newton(samples: list[Sample]) -> tuple[list[float], list[float]]:
     row = [_gap(sample) for sample in samples]
     heads = [row[0]]
     for order in range(1, len(nodes)):
-        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(zip(row, row[1:], strict=False))]
+        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(pairwise(row))]
         heads.append(row[0])
     return nodes, heads

@@ -33,7 +33,7 @@ CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "me
 
 
 class FoundPage(NamedTuple):
-    """What is told: of which scene and condition, over which interval; how many places were allowed; units of tables."""
+    """What is told: of which scene and condition, over which interval; places of the scan and at most; in which units."""
 
     title: str
     condition: Condition
@@ -162,7 +162,8 @@ def to_json(page: FoundPage) -> str:
         "runs": len(found.samples), "scan": page.scan, "spacing": found.spacing, "complete": found.complete,
         "crossings": [_crossing_block(page, each) for each in found.crossings],
         "touches": [
-            {**_place(page, each.sample), "from": each.low, "to": each.high, "side": each.side} for each in found.touches
+            {**_place(page, each.sample), "from": each.low, "to": each.high, "side": each.side}
+            for each in found.touches
         ],
         "jumps": [{"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.jumps],
         "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in found.met],
@@ -170,9 +171,14 @@ def to_json(page: FoundPage) -> str:
             {"from": each.low, "to": each.high, "code": each.code, "reason": each.reason, "variants": each.variants}
             for each in found.unsolved
         ],
-        "least": _place(page, found.least), "greatest": _place(page, found.greatest), "refined": found.refined,
+        **{word: _place(page, each) for word, each in _extremes(found)}, "refined": found.refined,
         "course": [_place(page, each) for each in found.samples],
     })  # fmt: skip
+
+
+def _extremes(found: CourseFindings) -> Iterator[tuple[str, Sample]]:
+    """The least and the greatest that were found."""
+    yield from ((word, each) for word, each in (("least", found.least), ("greatest", found.greatest)) if each)
 
 
 def _crossing_block(page: FoundPage, each: Crossing) -> dict[str, Any]:
@@ -181,10 +187,8 @@ def _crossing_block(page: FoundPage, each: Crossing) -> dict[str, Any]:
     return {**_place(page, each.sample), "error": each.error, "way": way, "flat": each.flat, "set": line}
 
 
-def _place(page: FoundPage, sample: Sample | None) -> dict[str, Any] | None:
+def _place(page: FoundPage, sample: Sample) -> dict[str, Any]:
     """A place and the measure there."""
-    if sample is None:
-        return None
     size = parse_unit(page.interval.unit)[0] if page.interval.unit else 1.0
     told = {"x": sample.x, "si": sample.x * size}
     if sample.gap is None:
@@ -193,7 +197,7 @@ def _place(page: FoundPage, sample: Sample | None) -> dict[str, Any] | None:
 
 
 def to_csv(page: FoundPage) -> str:
-    """A line each: crossings, touches, ends of jumps and of what is met, extremes, and every variant that was solved."""
+    """A line each: crossings, touches, ends of jumps and of what is met, extremes, and every variant."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(CSV_COLUMNS)
@@ -208,9 +212,8 @@ def to_csv(page: FoundPage) -> str:
     for met in found.met:
         for edge, word in zip(met, ("from", "to"), strict=True):
             writer.writerow(["met", edge.x, edge.error, page.interval.unit, "", "", "", word, edge.kind])
-    for sample, word in ((found.least, "least"), (found.greatest, "greatest")):
-        if sample is not None:
-            writer.writerow(_line(page, "extreme", sample, 0.0, word))
+    for word, sample in _extremes(found):
+        writer.writerow(_line(page, "extreme", sample, 0.0, word))
     for sample in found.samples:
         writer.writerow(_line(page, "course", sample, 0.0, sample.why[0]))
     return text.getvalue()

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from heuncli.commands.find.course import APART, Course, Sample, slope
-from heuncli.commands.find.results import Crossing, CourseJump, Met, MetEdge, Touch, UnsolvedStretch
+from heuncli.commands.find.results import CourseJump, Crossing, Met, MetEdge, Touch, UnsolvedStretch
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
 SURE = 0.5  # of a slope: what it may be off by
@@ -83,7 +83,7 @@ def slope_at(course: Course, group: SideGroup, best: Sample, size: float) -> tup
     whole = [*reversed(left), best, *right]
     if len(whole) < 3:
         return None
-    # the parabola through the nearest, and the cubics with one more: what they differ by is what the slope may be off by
+    # the parabola through the nearest, and the cubics with one more: by what they differ the slope may be off
     near = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
     wider = [sorted({*near, more}) for more in whole if more not in near]
     slopes = [slope(sorted(each), best.x) for each in (near, *wider)]

@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit, say
-from heuncli.cli.solving import overrides, tolerance, warn
+from heuncli.cli.output import emit
+from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
+from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.sensitivity.derivative import derivative
 from heuncli.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
 from heuncli.commands.sensitivity.request import FORMATS, SensitivityRequest
@@ -21,16 +22,11 @@ from heuncli.errors import Problem
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Measured, Recipe
-from heuncli.variants.once import AnswersOnce
+from heuncli.variants.once import REASONS, AnswersOnce
 from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
-REASONS = {
-    "open": "open: the laws of rigid bodies do not give it (redundant supports)",
-    "unknown": "not known: beside a singular pose",
-    "beyond": "beyond the run's horizon nothing is claimed",
-}
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
 
@@ -58,9 +54,7 @@ def main(request: SensitivityRequest) -> int:
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
-    warn(spec, None, request.quiet)
-    for text, variants in ({} if request.quiet else once.warnings()).items():
-        say(f"warning: heun: {text} (in {variants} of {once.runs} variants)")
+    warn_of_variants(spec, once, request.quiet)
     return int(request.strict and any(one.kind == "refused" for each in found for one in each.slopes.values()))
 
 

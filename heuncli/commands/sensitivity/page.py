@@ -20,8 +20,8 @@ from heuncli.variants.written import WrittenNumber
 from heuncli.version import VERSION
 
 COLUMNS = (
-    TextColumn("by", "left"), TextColumn("value"), TextColumn("", "left"), TextColumn("derivative"), TextColumn("error"),
-    TextColumn("", "left"), TextColumn("% per %"), TextColumn("", "left"),
+    TextColumn("by", "left"), TextColumn("value"), TextColumn("", "left"), TextColumn("derivative"),
+    TextColumn("error"), TextColumn("", "left"), TextColumn("% per %"), TextColumn("", "left"),
 )  # fmt: skip
 SPREAD_COLUMNS = (
     TextColumn("by", "left"), TextColumn("spread ±"), TextColumn("", "left"), TextColumn("contributes ±"),
