@@ -147,7 +147,7 @@ class Course:
         return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
 
     def beside(self, i: int, way: int) -> list[Sample]:
-        """Up to two samples of the stretch before a sample (way -1) or behind its next (1), apart; the nearest first."""
+        """Up to two samples of the stretch before a sample (way -1) or behind its next (1); the nearest first."""
         width = self.samples[i + 1].x - self.samples[i].x
         found: list[Sample] = []
         k = i if way < 0 else i + 1
