@@ -42,13 +42,13 @@ class FirstStages(Stages):
     def __init__(self) -> None:
         self.kept: dict[Key, KeptStage] = {}
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
         """The result of a stage; where it is kept its arrays cannot be written to.
 
         It is not kept where it holds some of the input, nor where wrapped input gives another one or none: a stage may
         ask whether two records are the same object.
         """
-        result = stage(*given)
+        result = stage(*given) if by is None else by()
         if (stage, of) not in self.kept:
             looked_at = tuple(map(LookedAt, given))
             with suppress(Exception):
@@ -65,13 +65,13 @@ class LaterStages(Stages):
     def __init__(self, first: FirstStages) -> None:
         self.first = first
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
         """The result of a stage."""
         kept = self.first.kept.get((stage, of))
         if kept is not None and kept.stands(given):
             result: T = kept.result
             return result
-        return stage(*given)
+        return stage(*given) if by is None else by()
 
 
 class LookedAt:

@@ -68,25 +68,34 @@ def numbers_of(layout: Layout) -> dict[str, Any]:
     }
 
 
-def answer_sizes(layout: Layout) -> list[tuple[Any, int]]:
+def answer_sizes(layout: Layout) -> dict[str, tuple[Any, int]]:
     """The parts of what the kernel answers at a state: of which kind, and how many."""
-    return [
-        (BODY_ANSWER, len(layout.place)),
-        (FREEDOM_ANSWER, len(layout.freedoms)),
-        (LOAD_ANSWER, len(layout.tables["loads"])),
-        (CLOSURE_ANSWER, len(layout.rows)),
-        (STATE_ANSWER, 1),
-    ]
+    return {
+        "bodies": (BODY_ANSWER, len(layout.place)),
+        "freedoms": (FREEDOM_ANSWER, len(layout.freedoms)),
+        "loads": (LOAD_ANSWER, len(layout.tables["loads"])),
+        "rows": (CLOSURE_ANSWER, len(layout.rows)),
+        "whole": (STATE_ANSWER, 1),
+    }
+
+
+def room_for_answers(layout: Layout, n_t: int) -> dict[str, Table]:
+    """Tables (n_t, n) for what the kernel answers at so many states."""
+    return {name: np.empty((n_t, count), kind) for name, (kind, count) in answer_sizes(layout).items()}
+
+
+def as_numbers(table: Table) -> Array:
+    """A table (n_t, n) as the numbers that it is made of, (n_t, width); a view."""
+    n_t, count = table.shape
+    return table.view(np.float64) if count else np.zeros((n_t, 0))
 
 
 def settled(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> tuple[Array, Table]:
     """A state settled on the closures, (n,), and what the kernel tells of the bodies there, tree order."""
-    sizes = answer_sizes(layout)
-    own, out = np.array(state, dtype=float), np.zeros(sum(kind.itemsize // 8 * count for kind, count in sizes))
-    nothing = np.zeros(0)
-    arrays = {"times": np.array([t]), "states": own, "branches": nothing, "holding": nothing, "out": out}
-    at.recover(arrays, True, False)
-    return own, parts(out[None, :], sizes)[0][0]
+    own, told, nothing = np.array(state, dtype=float), room_for_answers(layout, 1), np.zeros(0)
+    arrays = {"times": np.array([t]), "states": own, "branches": nothing, "holding": nothing, "columns": nothing}
+    at.recover(arrays | {name: as_numbers(table).reshape(-1) for name, table in told.items()}, True, False)
+    return own, told["bodies"][0]
 
 
 @record

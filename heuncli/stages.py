@@ -14,9 +14,12 @@ T = TypeVar("T")
 class Stages:
     """Runs stages, and keeps nothing."""
 
-    def run(self, stage: Callable[..., T], *given: Any, of: str = "") -> T:
-        """The result of a stage; of: which one, of a stage that is run for several things by their names."""
-        return stage(*given)
+    def run(self, stage: Callable[..., T], *given: Any, of: str = "", by: Callable[[], T] | None = None) -> T:
+        """The result of a stage; of: which one, of a stage that is run for several things by their names.
+
+        by: how the same is made of stages, where some of what it is made of may be kept when it is not.
+        """
+        return stage(*given) if by is None else by()
 
 
 ANEW = Stages()

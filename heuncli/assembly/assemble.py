@@ -28,10 +28,15 @@ class Placed:
 
 
 def assemble(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Assembly:
-    """Poses and rates at t0: what is held, and for the rest the nearest to the drawing that fits.
+    """Poses and rates at t0: what is held, and for the rest the nearest to the drawing that fits; one stage, of stages.
 
     Raises SolveError: does-not-fit, held-conflict, rates-do-not-fit, singular-pose.
     """
+    return stages.run(assembled_at, mechanism, t0, by=lambda: assembled_at(mechanism, t0, stages))
+
+
+def assembled_at(mechanism: Mechanism, t0: float, stages: Stages = ANEW) -> Assembly:
+    """The same."""
     found, size = conditions_of(mechanism, t0), size_of(mechanism)
     if mechanism.stops or any(joint.restitution is not None for joint in mechanism.joints):
         from heuncli.assembly.slack_ropes import assembled  # few scenes have them

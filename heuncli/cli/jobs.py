@@ -1,4 +1,4 @@
-"""The same work on many things, in several processes that are forked from this one; answers come in the things' order.
+"""The same work on many things, in several processes that are forked from this one.
 
 What was imported before is there in each of them: Python starts once. A process that dies takes with it what it was at,
 and nothing else: the next takes its place. Impure: processes.
@@ -12,6 +12,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from heuncli.cli.leaving import Undoing
+from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -27,12 +28,23 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def forks() -> bool:
+    """Whether processes can be forked here."""
+    return hasattr(os, "fork")
+
+
 def how_many(asked: int | None, things: int) -> int:
     """How many processes work: as many as asked for, else one a processor where there is enough to do."""
-    if not hasattr(os, "fork"):
+    if not forks():
         return 1
     most = asked if asked is not None else processors() if things >= WORTH else 1
     return max(1, min(most, things))
+
+
+class Died(NamedTuple):
+    """What stands for an answer whose process died: how, in words."""
+
+    how: str
 
 
 def each(
@@ -54,18 +66,48 @@ def each(
             if is_last(answer):
                 return
         return
-    pool = _Pool(work, items, dead, is_last)
+    until = len(items)
+    numbers = iter(range(len(items)))
+
+    def more() -> tuple[int, Item] | None:
+        number = next(numbers, until)
+        return (number, items[number]) if number < until else None
+
+    waiting: dict[int, Answer] = {}
+    done = 0
+    for (number, item), found in as_done(lambda numbered: work(numbered[1]), more, jobs):
+        waiting[number] = dead(item, found.how) if isinstance(found, Died) else found
+        if is_last(waiting[number]):
+            until = min(until, number + 1)
+        while done in waiting:
+            answer = waiting.pop(done)
+            done += 1
+            yield answer
+            if is_last(answer):
+                return
+
+
+def as_done(
+    work: Callable[[Item], Answer], more: Callable[[], Item | None], jobs: int, stopped: int | None = None
+) -> Iterator[tuple[Item, Answer | Died]]:
+    """Each item with its answer, or how the process died that was at it, in the order in which they come.
+
+    more: the next item, None where there is none for now; it is asked after every answer, once what is done with that
+    is done, too, and the end is when there is none while nobody is at work. stopped: a descriptor; once anything can be
+    read from it, this ends. The processes are made as they find work, and end with this.
+    """
+    pool = _Pool(work, more, jobs)
     with Undoing(pool.kill):
         try:
-            yield from pool.answers(jobs)
+            yield from pool.answers(stopped)
         finally:
             pool.kill()
 
 
-class _Worker:
+class _Worker(Generic[Item, Answer]):
     """A process at work on one item after the other, and the pipe to it."""
 
-    def __init__(self, work: Callable[[Item], Answer], others: Sequence[_Worker]) -> None:
+    def __init__(self, work: Callable[[Item], Answer], others: Sequence[_Worker[Item, Answer]]) -> None:
         import multiprocessing
 
         context = multiprocessing.get_context("fork")
@@ -74,7 +116,13 @@ class _Worker:
         self.process: ForkProcess = context.Process(target=_serve, args=(theirs, work, inherited), daemon=True)
         self.process.start()
         theirs.close()
-        self.at: int | None = None
+        self.at: Item | None = None
+
+    def give(self, item: Item) -> None:
+        """Something to do."""
+        self.at = item
+        with suppress(BrokenPipeError, ConnectionResetError):  # it died between two items: found while waiting
+            self.pipe.send(item)
 
     def end(self) -> str:
         """How it died, in words."""
@@ -101,67 +149,52 @@ def _serve(pipe: Connection, work: Callable[[Item], Answer], inherited: Sequence
 
 
 class _Pool(Generic[Item, Answer]):
-    """Processes, and the answers that wait for those before them."""
+    """Processes, each at work on an item or idle."""
 
-    def __init__(
-        self, work: Callable[[Item], Answer], items: Sequence[Item], dead: Callable[[Item, str], Answer],
-        is_last: Callable[[Answer], bool],
-    ) -> None:  # fmt: skip
-        self.work, self.items, self.dead, self.is_last = work, items, dead, is_last
-        self.workers: list[_Worker] = []
-        self.waiting: dict[int, Answer] = {}
-        self.next = 0
-        self.until = len(items)
+    def __init__(self, work: Callable[[Item], Answer], more: Callable[[], Item | None], jobs: int) -> None:
+        self.work, self.more, self.jobs = work, more, jobs
+        self.workers: list[_Worker[Item, Answer]] = []
 
-    def answers(self, jobs: int) -> Iterator[Answer]:
-        """All of them in order."""
-        for _ in range(jobs):
-            self._begin()
-        for number in range(len(self.items)):
-            while number not in self.waiting:
-                self._receive()
-            answer = self.waiting.pop(number)
-            yield answer
-            if self.is_last(answer):
-                return
-
-    def _begin(self) -> None:
-        """One process more, with the next item."""
-        worker = _Worker(self.work, self.workers)
-        self.workers.append(worker)
-        self._give(worker)
-
-    def _give(self, worker: _Worker) -> None:
-        """The next item, if one is left."""
-        worker.at = None
-        if self.next < self.until:
-            worker.at, self.next = self.next, self.next + 1
-            with suppress(BrokenPipeError, ConnectionResetError):  # it died between two items: found while waiting
-                worker.pipe.send(self.items[worker.at])
-
-    def _receive(self) -> None:
-        """Wait for the next answers, or deaths."""
+    def answers(self, stopped: int | None) -> Iterator[tuple[Item, Answer | Died]]:
+        """All of them as they come."""
         from multiprocessing.connection import wait
 
-        busy = {worker.pipe: worker for worker in self.workers if worker.at is not None}
-        for pipe in wait([*busy]):
-            worker = busy[pipe]  # type: ignore[index]
-            assert worker.at is not None
-            try:
-                answer = worker.pipe.recv()
-            except (EOFError, ConnectionResetError):
-                self.workers.remove(worker)
-                answer = self.dead(self.items[worker.at], worker.end())
-                self._keep(worker.at, answer)
-                self._begin()
-            else:
-                self._keep(worker.at, answer)
-                self._give(worker)
+        while True:
+            self._employ()
+            busy: dict[object, _Worker[Item, Answer]] = {
+                worker.pipe: worker for worker in self.workers if worker.at is not None
+            }
+            if not busy:
+                return
+            ready = wait([*busy, *(() if stopped is None else (stopped,))])  # type: ignore[list-item]
+            if stopped in ready:
+                return
+            for pipe in ready:
+                yield self._received(busy[pipe])
 
-    def _keep(self, number: int, answer: Answer) -> None:
-        self.waiting[number] = answer
-        if self.is_last(answer):
-            self.until = min(self.until, number + 1)
+    def _employ(self) -> None:
+        """Items for those who have none, as long as there are any."""
+        idle = [worker for worker in self.workers if worker.at is None]
+        while idle or len(self.workers) < self.jobs:
+            item = self.more()
+            if item is None:
+                return
+            if not idle:
+                self.workers.append(_Worker(self.work, self.workers))
+            (idle.pop() if idle else self.workers[-1]).give(item)
+
+    def _received(self, worker: _Worker[Item, Answer]) -> tuple[Item, Answer | Died]:
+        """What a worker has to say, which goes on with the next item at once."""
+        item, answer = worker.at, None
+        assert item is not None
+        try:
+            answer = worker.pipe.recv()
+        except (EOFError, OSError):  # the latter where it died while it spoke
+            self.workers.remove(worker)
+            return item, Died(worker.end())
+        worker.at = None
+        self._employ()
+        return item, answer
 
     def kill(self) -> None:
         """End all of them at once."""

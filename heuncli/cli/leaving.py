@@ -49,6 +49,43 @@ class Undoing:
         _undone.remove(self.undo)
 
 
+class Stopping:
+    """While this is under way the first signal to end is only taken down; from `descriptor` something can be read then.
+
+    Whoever is at work ends it in good order, and leaves with 128 + `number`. A second signal ends the process at once.
+    """
+
+    def __init__(self) -> None:
+        self.number = 0
+        self.heard: list[int] = []
+
+    def __enter__(self) -> Stopping:
+        self.descriptor, self.written = os.pipe()
+        for name in ("SIGINT", "SIGTERM"):
+            number = getattr(_signal, name)
+            if _signal.getsignal(number) is _leave:
+                self.heard.append(number)
+                _signal.signal(number, self._stop)
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for number in self.heard:
+            _signal.signal(number, _leave)
+        os.close(self.descriptor)
+        os.close(self.written)
+
+    def _stop(self, number: int, frame: FrameType | None) -> None:
+        if self.number:
+            _leave(number, frame)
+        self.number = number
+        os.write(self.written, b".")
+
+    @property
+    def word(self) -> str:
+        """How it ended, as the line says it that a signal leaves."""
+        return next(LINES[name] for name in LINES if getattr(_signal, name, None) == self.number).decode().strip()
+
+
 def end(code: int) -> None:
     """End the process at once where nothing waits for that; else return, and Python ends it.
 

@@ -69,6 +69,7 @@ COMMANDS = (
     Command("sweep", page="variants"),
     Command("find", page="variants"),
     Command("sensitivity", page="variants"),
+    Command("tune", page="variants", grace=0.8, phase="while variants were tried"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
     Command("methods", page="methods"),

@@ -13,7 +13,7 @@ from heuncli.errors import Finding
 from heuncli.expressions.dimensions import COORDINATES, FACTOR, FREE, OF_TIME, Measure, combined, looked_up, loose
 from heuncli.expressions.programs import Code, Expression, Switch, TableFunction, outside
 from heuncli.kernel.choose import expressions
-from heuncli.records import record, replace
+from heuncli.named_tuples import NamedTuple
 
 OP = expressions.OPERATIONS
 MOST_NODES = 500
@@ -24,8 +24,7 @@ TRUTHS = frozenset({*COMPARISONS.values(), "step"})
 BRANCHING = frozenset({*TRUTHS, "sign", "abs", "min", "max", "atan2"})
 
 
-@record
-class Part:
+class Part(NamedTuple):
     """The code of a part of an expression, the variables it uses, and its value where it is constant.
 
     is_truth: it is 1 or 0, and where it changes a branch changes in its own code. measure: its dimension.
@@ -166,7 +165,7 @@ class Codegen:
         if condition.constant is not None:
             if math.isnan(condition.constant):
                 return condition
-            return replace(then if condition.constant != 0.0 else otherwise, measure=measure)
+            return (then if condition.constant != 0.0 else otherwise)._replace(measure=measure)
         chosen = condition.code
         if not condition.is_truth and not condition.uses <= {0}:
             self.constants.append(0.0)

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping
+from functools import lru_cache
 from types import MappingProxyType
 from typing import Any
 
@@ -23,7 +24,7 @@ from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, p
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean, nearest
-from heuncli.records import record, replace
+from heuncli.records import record
 from heuncli.results_schema import REPORT_OF, ROWS, SHARED
 
 LONGEST, DEEPEST = 2000, 48
@@ -84,8 +85,8 @@ LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions 
 TOKEN = re.compile(
     r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
 )
-
-
+MOST_TEXTS = 1024  # whose tokens are kept: variants of a spec read the same ones again
+BEHIND = ("",) * 4  # as far as it is looked ahead
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -162,14 +163,19 @@ def too_deep() -> Finding:
     return Finding("expression-limit", message, "name its inner parts under parameters, or write it as a sum")
 
 
+@lru_cache(maxsize=MOST_TEXTS)
+def tokens_of(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
+    """The tokens of a text: kind, word and end of each; then kinds and words alone, empty ones after the last."""
+    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
+    return found, tuple(kind for kind, _, _ in found) + BEHIND, tuple(word for _, word, _ in found) + BEHIND
+
+
 class _Parser:
     """One reading of one text."""
 
     def __init__(self, text: str, scope: Scope) -> None:
         self.text, self.scope = text, scope
-        self.tokens = [
-            (found.lastgroup or "", found[found.lastgroup or 0], found.end()) for found in TOKEN.finditer(text)
-        ]
+        self.tokens, self.kinds, self.words = tokens_of(text)
         self.at = 0
         self.nested = 0
         self.codegen = Codegen(strict=scope.with_units)
@@ -187,14 +193,14 @@ class _Parser:
     @property
     def token(self) -> str:
         """The next token, empty at the end."""
-        return self.tokens[self.at][1] if self.at < len(self.tokens) else ""
+        return self.words[self.at]
 
     @property
     def kind(self) -> str:
-        return self.tokens[self.at][0] if self.at < len(self.tokens) else ""
+        return self.kinds[self.at]
 
     def take(self, token: str) -> bool:
-        if self.token == token:
+        if self.words[self.at] == token:
             self.at += 1
             return True
         return False
@@ -290,6 +296,8 @@ class _Parser:
     def disjunction(self) -> Part:
         begin = self.at
         part = self.conjunction()
+        if self.token != "or":
+            return part
         text = self.written(begin)
         while self.take("or"):
             one, begin = self.codegen.number(1.0), self.at
@@ -300,6 +308,8 @@ class _Parser:
     def conjunction(self) -> Part:
         begin = self.at
         part = self.negation()
+        if self.token != "and":
+            return part
         text = self.written(begin)
         while self.take("and"):
             begin = self.at
@@ -314,6 +324,8 @@ class _Parser:
             turns += 1
         begin = self.at
         part = self.comparison()
+        if not turns:
+            return part
         text = self.written(begin)
         for _ in range(min(turns, 2 + turns % 2)):
             part = self.codegen.truth(part, text, "eq")
@@ -370,7 +382,7 @@ class _Parser:
             result = whole if n > 0.0 else self.codegen.apply("div", self.codegen.number(1.0), whole)
         else:
             result = self.codegen.apply("pow", part, exponent)
-        return replace(result, measure=measure)
+        return result._replace(measure=measure)
 
     def operand(self) -> Part:
         kind, token = self.kind, self.token

@@ -7,7 +7,7 @@ A Pack joins the programs of many expressions in the arrays the kernel takes.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from copy import copy
 from functools import cached_property
 
@@ -239,3 +239,11 @@ class Pack:
         least, largest = (array("d", bytes(8 * len(begins))) for _ in range(2))
         enclosure.bounds_over(self.expressions, start, count, array("d", begins), array("d", ends), least, largest)
         return least, largest
+
+
+def pack_of(values: Iterable[Expression]) -> Pack:
+    """The pack of some programs, in their order."""
+    pack = Pack()
+    for value in values:
+        pack.add(value)
+    return pack

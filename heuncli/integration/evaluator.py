@@ -9,10 +9,10 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.records import fields, record
-from heuncli.response import Columns, answer_sizes, columns_of, workspace_of
+from heuncli.response import Columns, as_numbers, columns_of, room_for_answers, workspace_of
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
-from heuncli.tree.tables import Table, parts
+from heuncli.tree.tables import Table
 
 AT_ONCE, ROWS = 20_000, 10  # body-states to a call of the kernel, some ten milliseconds; closure rows cost their square
 CAUSES = ("motion", "drives", "gravity")  # beside the loads: velocity terms, what is prescribed, weight
@@ -99,37 +99,37 @@ class Evaluator:
         at the start.
         """
         layout, n_t = self.layout, len(times)
-        sizes = answer_sizes(layout)
-        own = sum(kind.itemsize // 8 * count for kind, count in sizes)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
-        width = own + n_c * self.workspace.column_width
+        told, columns = room_for_answers(layout, n_t), np.zeros((n_t, n_c * self.workspace.column_width))
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
-        out = np.zeros((n_t, width))
         held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
         closed = np.zeros((n_t, len(layout.contacts)))
         # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
         closed[:] = (self.start_holding if holding is None else holding) > 0.0
-        arrays = {"times": at, "states": settled, "branches": held, "holding": closed, "out": out}
-        self._recover(arrays, hold_rows, causes)
-        bodies, freedoms, loads, rows, whole = parts(out, sizes)
-        columns = out[:, own:].reshape(n_t, n_c, -1) if causes else None
+        given = {"times": at, "branches": held, "holding": closed}
+        answers = {"states": settled, "columns": columns, **{name: as_numbers(table) for name, table in told.items()}}
+        self._recover(given, answers, hold_rows, causes)
+        rows, whole = told["rows"], told["whole"]
         # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
         still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
         return Recovered(
-            times=at, states=settled, bodies=bodies, freedoms=freedoms, loads=loads, rows=rows,
+            times=at, states=settled, bodies=told["bodies"], freedoms=told["freedoms"], loads=told["loads"], rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
             residual=np.where(still, 0.0, whole["residual"][:, 0]), may_stay=self.may_stay(whole["gap"][:, 0]),
             holding=closed,
-            causes=columns_of(columns, len(layout.place), len(layout.freedoms)) if columns is not None else None,
+            causes=columns_of(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
+            if causes
+            else None,
         )  # fmt: skip
 
-    def _recover(self, arrays: dict[str, Array], hold_rows: bool, causes: bool) -> None:
-        """The kernel's calls for arrays by instants, in which the states and what goes out are replaced.
+    def _recover(self, given: dict[str, Array], answers: dict[str, Array], hold_rows: bool, causes: bool) -> None:
+        """The kernel's calls for arrays by instants; answers, the states among them, are written into.
 
         Each is so short that an alarm or an interrupt is heard soon: they wait for a call to end.
         """
-        count, many = len(arrays["out"]), max(1, AT_ONCE // max(work_of(self.layout), 1))
+        arrays = given | answers
+        count, many = len(given["times"]), max(1, AT_ONCE // max(work_of(self.layout), 1))
         for begin in range(0, count, many):
             part = {name: values[begin : begin + many] for name, values in arrays.items()}
             first = hold_rows and begin > 0  # the rows are chosen there, once more
@@ -138,5 +138,5 @@ class Evaluator:
             flat = {name: values.reshape(-1) for name, values in part.items()}
             self.workspace.recover(flat, not hold_rows, causes)
             if first:
-                for name in ("states", "out"):
+                for name in answers:
                     arrays[name][begin : begin + many] = part[name][1:]

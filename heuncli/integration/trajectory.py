@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Mapping
 from functools import cached_property
 
@@ -10,8 +11,9 @@ import numpy as np
 from heuncli.integration.contacts.blows import Jump
 from heuncli.integration.methods.method import Method
 from heuncli.integration.segments import NO_SEGMENTS, Segments
+from heuncli.kernel.choose import integration
 from heuncli.records import record
-from heuncli.results import Array, Indices
+from heuncli.results import Array, Indices, Mask
 
 
 @record
@@ -34,6 +36,29 @@ class Kept:
         return Kept(steps[order], np.concatenate([self.records[own], list(others.values())])[order])
 
 
+@record
+class Courses:
+    """The polynomials of a run's steps, of those that made one.
+
+    spans (n_steps, 3): whether it was kept, begin and length of the step [s]; numbers (n_steps, .): the state at its
+    begin and the rows of coefficients, of what is integrated.
+    """
+
+    spans: Array
+    numbers: Array
+
+    def known(self, times: Array, step: Indices, ends: Array) -> Mask:
+        """Which instants lie within steps whose polynomials were kept, before their ends, (n,)."""
+        return np.asarray((self.spans[step, 0] > 0.0) & (times < ends[step]))
+
+    def states(self, times: Array, step: Indices, n: int) -> Array:
+        """States of n numbers at instants within such steps, (n_t, n)."""
+        out = np.zeros(len(times) * n)
+        flat = {"spans": self.spans.reshape(-1), "courses": self.numbers.reshape(-1)}
+        integration.within(flat, n, array("d", times.tobytes()), array("i", step.astype(np.intc).tobytes()), out)
+        return out.reshape(-1, n)
+
+
 NOTHING_KEPT = Kept(np.zeros(0, dtype=int), np.zeros((0, 0)))
 
 
@@ -44,7 +69,7 @@ class Trajectory:
     times (n_t,) [s]; states (n_t, n_state), those of the scene; kept: of what is integrated in its place; ends:
     instants of the accepted steps; gap: largest closure gap left [m]. branches (n_steps, n): those of the expressions
     that a step held; turned: of each step whether they change at its end; undecided: of how many steps bounds could not
-    tell what loads do between the stages.
+    tell what loads do between the stages; courses: of a run that is asked for more instants, unless it is very long.
     """
 
     times: Array
@@ -70,6 +95,7 @@ class Trajectory:
     blows: tuple[Jump, ...] = ()
     holding: Array = np.zeros((1, 0))  # (n_steps + 1, contacts): closed in each step, and behind the last one
     notes: tuple[str, ...] = ()  # what is told of contacts
+    courses: Courses | None = None
     within: Callable[[Array], Array] | None = None  # of steps that are not the kernel's: the states at instants
 
     @property
@@ -85,6 +111,8 @@ class Trajectory:
     @cached_property
     def after_blows(self) -> dict[int, Array]:
         """The records from which the steps after blows start."""
+        if not self.blows:
+            return {}
         at = {int(np.searchsorted(self.ends, blow.time, side="right")) for blow in self.blows}
         own = np.isin(self.kept.steps, list(at))
         return dict(zip(self.kept.steps[own].tolist(), self.kept.records[own], strict=True))

@@ -70,23 +70,33 @@ def put_row(
     return at + 8
 
 
-def put_answers(scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t) -> cython.Py_ssize_t:
-    """All bodies, freedoms, loads and closure rows, one after the other."""
+def put_answers(
+    scene: cython.pointer[Scene], to: cython.pointer[Instants], j: cython.Py_ssize_t, idle: cython.int
+) -> cython.void:
+    """All bodies, freedoms, loads and closure rows at a state, each kind in its own place, and the state itself."""
     i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = j * to.body_width
     for i in range(scene.body_count):
-        at = put_body(out, at, cython.address(scene.bodies[i]))
+        at = put_body(to.bodies, at, cython.address(scene.bodies[i]))
+    at = j * to.freedom_width
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        out[at] = freedom.q
-        out[at + 1] = freedom.u
-        out[at + 2] = freedom.udot
-        out[at + 3] = freedom.drive
+        to.freedoms[at] = freedom.q
+        to.freedoms[at + 1] = freedom.u
+        to.freedoms[at + 2] = freedom.udot
+        to.freedoms[at + 3] = freedom.drive
         at += 4
+    at = j * to.load_width
     for i in range(scene.load_count):
-        at = put_load(out, at, cython.address(scene.loads[i]))
+        at = put_load(to.loads, at, cython.address(scene.loads[i]))
+    at = j * to.row_width
     for i in range(scene.closure_count):
-        at = put_row(scene, out, at, cython.address(scene.closures[i]))
-    return at
+        at = put_row(scene, to.rows, at, cython.address(scene.closures[i]))
+    at = j * to.whole_width
+    to.whole[at] = scene.gap
+    to.whole[at + 1] = idle
+    to.whole[at + 2] = scene.pivot_recovered
+    to.whole[at + 3] = scene.residual
 
 
 def recover_state(
@@ -152,7 +162,6 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
     """Recover one state after the other, each by itself; unless afresh, the rows chosen at one are the next one's."""
     j: cython.Py_ssize_t
     i: cython.Py_ssize_t
-    at: cython.Py_ssize_t
     idle: cython.int
     n: cython.Py_ssize_t = instants.n
     opened: cython.bint = False
@@ -168,13 +177,9 @@ def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instan
         idle = recover_state(scene, instants.times[j], instants.y, instants.dy, j == 0 or instants.afresh or opened)
         for i in range(n):
             instants.states[j * n + i] = instants.y[i]
-        at = put_answers(scene, instants.out, j * instants.width)
-        instants.out[at] = scene.gap
-        instants.out[at + 1] = idle
-        instants.out[at + 2] = scene.pivot_recovered
-        instants.out[at + 3] = scene.residual
+        put_answers(scene, instants, j, idle)
         if instants.causes:
-            answer_causes(scene, instants.times[j], instants.y, instants.out, at + 4)
+            answer_causes(scene, instants.times[j], instants.y, instants.columns, j * instants.column_width)
     scene.programs.holding = FREE
 
 

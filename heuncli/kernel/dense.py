@@ -235,23 +235,36 @@ def interpolate(
     x: cython.double,
     out: cython.p_double,
 ) -> cython.void:
-    """State at the fraction x of the step: y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))).
+    """State at the fraction x of the step."""
+    polynomial(run.dense, 0, 3 + method.dense_rows, run.chart.y, run.n, x, out)
+    if method.attitude:
+        leave_chart(scene, method.attitude, run.y, out)
+
+
+def polynomial(
+    rows: cython.pp_double,
+    first: cython.Py_ssize_t,
+    count: cython.int,
+    y: cython.p_double,
+    n: cython.Py_ssize_t,
+    x: cython.double,
+    out: cython.p_double,
+) -> cython.void:
+    """y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))), of so many rows F of n components from the first on.
 
     Four components at a time, as in `combine`.
     """
     i: cython.Py_ssize_t = 0
     k: cython.int
-    n: cython.Py_ssize_t = run.n
-    y: cython.p_double = run.chart.y
     while i < n and n >= 4:
         i = i if i + 4 <= n else n - 4
         a: cython.double = 0.0
         b: cython.double = 0.0
         c: cython.double = 0.0
         d: cython.double = 0.0
-        for k in range(2 + method.dense_rows, -1, -1):
+        for k in range(count - 1, -1, -1):
             factor: cython.double = x if k % 2 == 0 else 1.0 - x
-            row: cython.p_double = run.dense[k]
+            row: cython.p_double = rows[first + k]
             a = (a + row[i]) * factor
             b = (b + row[i + 1]) * factor
             c = (c + row[i + 2]) * factor
@@ -263,9 +276,27 @@ def interpolate(
         i += 4
     while i < n:
         a = 0.0
-        for k in range(2 + method.dense_rows, -1, -1):
-            a = (a + run.dense[k][i]) * (x if k % 2 == 0 else 1.0 - x)
+        for k in range(count - 1, -1, -1):
+            a = (a + rows[first + k][i]) * (x if k % 2 == 0 else 1.0 - x)
         out[i] = y[i] + a
         i += 1
-    if method.attitude:
-        leave_chart(scene, method.attitude, run.y, out)
+
+
+def put_course(method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+    """The polynomial of the step, if it has made one, is put down: of instants that are asked later, too.
+
+    What holds in a chart of attitudes, or solves for its instants, is no state by its polynomial alone.
+    """
+    i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
+    span: cython.p_double = run.track.spans[run.track.done]
+    count: cython.Py_ssize_t = 3 + method.dense_rows
+    first: cython.Py_ssize_t = (count + 1) * run.track.done
+    span[0] = run.has_interpolant and not (method.by_step or method.attitude or run.determined)
+    span[1] = run.t
+    span[2] = run.h
+    if span[0]:
+        for i in range(run.n):
+            run.track.courses[first][i] = run.y[i]
+            for k in range(count):
+                run.track.courses[first + 1 + k][i] = run.dense[k][i]

@@ -14,7 +14,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.chosen import chosen_width
-    from heuncli.kernel.dense import clipped
+    from heuncli.kernel.dense import clipped, polynomial
     from heuncli.kernel.events import PARTS, take_branches, watch_afresh
     from heuncli.kernel.following import stand_here
     from heuncli.kernel.held import clear_accelerations
@@ -33,6 +33,28 @@ def record_width(workspace: Workspace, n: cython.int) -> int:
     return 2 * n + chosen_width(cython.address(workspace.scene))
 
 
+def within(courses: dict[str, Any], n: cython.int, times: Any, steps: Any, out: Any) -> None:
+    """States of n numbers at instants within steps that left their polynomials, (instants, n).
+
+    courses: flat arrays `spans` and `courses` of some steps, as an integration writes them. All arrays are flat.
+    """
+    k: cython.Py_ssize_t
+    step: cython.Py_ssize_t
+    memory: Memory = Memory()
+    count: cython.Py_ssize_t = len(courses["spans"]) // 3
+    rows: cython.Py_ssize_t = len(courses["courses"]) // max(n * count, 1)
+    spans: cython.pp_double = memory.over(courses["spans"], count, 3)
+    course: cython.pp_double = memory.over(courses["courses"], rows * count, n)
+    t: cython.p_double = memory.doubles(times)
+    at: cython.p_int = memory.ints(steps)
+    to: cython.pp_double = memory.over(out, len(times), n)
+    for k in range(len(times)):
+        step = at[k]
+        x: cython.double = (t[k] - spans[step][1]) / spans[step][2]
+        polynomial(course, step * rows + 1, rows - 1, course[step * rows], n, x, to[k])
+    memory.fetch()
+
+
 class Integration:
     """One integration of a scene over asked instants: the loop's state and its output."""
 
@@ -41,7 +63,8 @@ class Integration:
     ) -> None:
         """method: numbers and arrays by name (integration/methods); start: groups (a table), energy_group, weights,
         state, tolerance, step, rate, following, late; output: times, samples, and of the steps ends, settled, pivots,
-        turned, branches, passed, which are written into: flat arrays. following: ends, settled and branches are given.
+        turned, branches, passed, and where polynomials are to be kept spans and courses, which are written into: flat
+        arrays. following: ends, settled and branches are given.
         """
         if not cython.compiled:
             self.run: Run = Run.blank()
@@ -244,6 +267,12 @@ class Integration:
         held: cython.int = self.workspace.scene.held_count
         run.track.branches = self.memory.over(output["branches"], run.track.most if held else 0, held)
         run.track.passed = self.memory.over(output["passed"], 0 if run.following else run.track.most, self.record_width)
+        run.track.coursed = len(output["spans"]) > 0
+        rows: cython.Py_ssize_t = self.course_rows
+        run.track.spans = self.memory.over(output["spans"], run.track.most if run.track.coursed else 0, 3)
+        run.track.courses = self.memory.over(
+            output["courses"], rows * run.track.most if run.track.coursed else 0, run.n
+        )
 
     def begin(self, t: cython.double, before_end: cython.double, end: cython.double) -> None:
         """A piece from t to its end, of which `before_end` is the last instant."""
@@ -314,6 +343,10 @@ class Integration:
             held = self.workspace.scene.held_count
             for k in range(run.track.done if held else 0):
                 self.output["branches"][k * held : (k + 1) * held] = run.track.branches[k]
+            for k in range(run.track.done if run.track.coursed else 0):
+                self.output["spans"][3 * k : 3 * k + 3] = run.track.spans[k]
+            for k in range(self.course_rows * run.track.done if run.track.coursed else 0):
+                self.output["courses"][k * run.n : (k + 1) * run.n] = run.track.courses[k]
         return code
 
     def fetch(self) -> None:
@@ -331,6 +364,11 @@ class Integration:
     def record_width(self) -> int:
         """Numbers of a record."""
         return record_width(self.workspace, self.run.n)
+
+    @property
+    def course_rows(self) -> int:
+        """Rows of what is put down of a step's polynomial: the state at its begin, and the coefficients."""
+        return 4 + self.method.dense_rows
 
     @property
     def t(self) -> float:

@@ -419,11 +419,16 @@ class MotionTangent(Value):
 
 
 class Instants(Value):
-    """States to recover, and room for the work; what is told of one after the other stands end to end."""
+    """States to recover, and room for the work; what is told of one kind stands end to end, state by state."""
 
     count: Size  # how many states
     n: Size  # numbers of a state
-    width: Size  # numbers of the answers of one
+    body_width: Size  # numbers of what is told of all bodies at one
+    freedom_width: Size
+    load_width: Size
+    row_width: Size
+    whole_width: Size
+    column_width: Size
     afresh: bool  # the closure rows are chosen anew at each
     held: bool  # `branches` are given
     causes: bool  # a column a cause is answered, too
@@ -432,7 +437,12 @@ class Instants(Value):
     holding: list[float]  # which contacts are closed, and how
     times: list[float]
     states: list[float]  # settled in place
-    out: list[float]  # the answers
+    bodies: list[float]  # the answers, a kind each (tree/tables.py)
+    freedoms: list[float]
+    loads: list[float]
+    rows: list[float]
+    whole: list[float]  # of the state itself
+    columns: list[float]  # of the causes
     y: list[float]  # the state under way
     dy: list[float]  # and its derivative
 

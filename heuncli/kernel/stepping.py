@@ -211,6 +211,9 @@ class Track(Struct):
     turned: list[float]  # of each whether branches turned at its end
     branches: list[list[float]]  # of each the branches that were held
     passed: list[list[float]]  # at each end what the next step starts from (steps.py, put_record)
+    coursed: int  # 1: the polynomials of steps that made one are put down, too
+    spans: list[list[float]]  # of each step whether it left its polynomial, its begin and its length
+    courses: list[list[float]]  # of each the state at its begin, then the rows of the polynomial, (., n)
 
 
 class Run(Struct):

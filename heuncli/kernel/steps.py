@@ -29,6 +29,7 @@ if not cython.compiled:
         enter_slopes,
         interpolate,
         need_interpolant,
+        put_course,
     )
     from heuncli.kernel.evaluator import value
     from heuncli.kernel.events import follow_angles, take_branches
@@ -369,6 +370,8 @@ def accept(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
     code: cython.int = REACHED
     run.control.dodges = 0
     sample(scene, method, run)
+    if run.track.coursed:
+        put_course(method, run)
     for i in range(run.n):
         run.y[i] = run.z[i]
         run.carry[i] = run.z_carry[i]

@@ -97,13 +97,14 @@ class Workspace:
         return [scene.programs.variables[i] for i in range(scene.variable_count)]
 
     def recover(self, arrays: dict[str, Any], afresh: cython.bint, causes: cython.bint) -> None:
-        """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place, `out`.
+        """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place.
 
-        After the answers of an instant: the gap over all rows, how many freedoms had no inertia behind them, the least
-        pivot of the closures, and what of all rows the accelerations do not meet. `branches`: those that expressions
+        Into `bodies`, `freedoms`, `loads`, `rows` goes what is told of each of these, into `whole` of an instant: the gap
+        over all rows, how many freedoms had no inertia behind them, the least pivot of the closures, and what of all
+        rows the accelerations do not meet. `branches`: those that expressions
         hold, as many numbers an instant; empty: as the states say; `holding`: the same of the contacts, which `hold`
-        takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: after all that a
-        column a cause (columns.py).
+        takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: a column a cause
+        (columns.py) goes into `columns`.
         """
         scene: cython.pointer[Scene] = cython.address(self.scene)
         memory: Memory = Memory()
@@ -114,7 +115,12 @@ class Workspace:
         instants: Instants = Instants(
             count,
             n,
-            len(arrays["out"]) // count,
+            len(arrays["bodies"]) // count,
+            len(arrays["freedoms"]) // count,
+            len(arrays["loads"]) // count,
+            len(arrays["rows"]) // count,
+            len(arrays["whole"]) // count,
+            len(arrays["columns"]) // count,
             afresh,
             len(arrays["branches"]) > 0,
             causes,
@@ -123,7 +129,12 @@ class Workspace:
             memory.whole(arrays["holding"]),
             memory.whole(arrays["times"]),
             memory.whole(arrays["states"]),
-            memory.whole(arrays["out"]),
+            memory.whole(arrays["bodies"]),
+            memory.whole(arrays["freedoms"]),
+            memory.whole(arrays["loads"]),
+            memory.whole(arrays["rows"]),
+            memory.whole(arrays["whole"]),
+            memory.whole(arrays["columns"]),
             memory.zeros(n),
             memory.zeros(n),
         )

@@ -17,24 +17,27 @@ from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
-from heuncli.kinetostatics.magnitudes import inertia_scale
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 
 AT_ONCE = 100_000  # instants times actions that are added up together
 
 
-def balance_residual(mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], size: float) -> float:
+def balance_residual(
+    mechanism: Mechanism, states: BodyStates, inertia: Array, actions: Sequence[Action], size: float
+) -> float:
     """Largest residual of any body, relative to its largest load; moments are divided by `size` [m].
 
+    inertia: the largest inertia load of each (`inertia_scale`).
     What rounding of the instant's largest load makes, added up from body to body, stays below UNBALANCED, however
     little the body bears itself.
     """
     ma, spin = inertia_loads(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = weight - ma, -spin
-    largest = inertia_scale(mechanism, states)
+    largest = inertia.copy()
 
     acting = [(end, F, M) for action in actions for end, F, M in action.on_bodies() if end.body != GROUND]
     many = max(1, AT_ONCE // max(len(states.x), 1))

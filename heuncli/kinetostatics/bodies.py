@@ -15,8 +15,10 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.shapes.by_component import body_by_body, cross, instants_first, rows, turned, turned_back
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
 
 NONE: Mapping[int, Array] = MappingProxyType({})
 
@@ -38,10 +40,23 @@ class BodyStates:
     v_centre: Array
     a_centre: Array
 
+    def rows_of(self, name: str) -> Array:
+        """A field by component, (n, 3, n_t); R (n, 3, 3, n_t)."""
+        if name not in self._rows:
+            self._rows[name] = self._found(name)
+        return self._rows[name]
+
+    @cached_property
+    def _rows(self) -> dict[str, Array]:
+        return {}
+
+    def _found(self, name: str) -> Array:
+        return rows(getattr(self, name))
+
     @cached_property
     def turning(self) -> tuple[Array, Array]:
-        """omega and alpha in the bodies' own axes, (n_t, n, 3)."""
-        w, u = (np.einsum("tnji,tnj->tni", self.R, x) for x in (self.omega, self.alpha))
+        """omega and alpha in the bodies' own axes, by component, (n, 3, n_t)."""
+        w, u = (turned_back(self.rows_of("R"), self.rows_of(name)) for name in ("omega", "alpha"))
         return w, u
 
     def point_position(self, body: int, point: Array) -> Array:
@@ -79,6 +94,63 @@ class BodyStates:
         return self.R[:, body] @ vector
 
 
+class CarriedStates(BodyStates):
+    """Bodies by the kernel's values at their joint points; what is asked for is found when it is first asked for.
+
+    Few runs need all of it: to load a joint the kernel's answers suffice, to balance a body its centre.
+    """
+
+    def __init__(self, table: Table, order: Sequence[int], gravity: Array, beside: Mapping[str, Array]) -> None:
+        """table: the kernel's, tree order (accelerations less g); order: each body's place in it.
+
+        beside: from the joint points to the origins and the centres, body axes, (n, 3) each.
+        """
+        straight = list(order) == [*range(table.shape[1])]
+        self.__dict__.update(_table=table, _order=None if straight else list(order), _gravity=gravity, _beside=beside)
+
+    def __getattr__(self, name: str) -> Array:
+        """What was not asked for before."""
+        if name in CARRIED:
+            # in this order sums over all bodies and instants add them up
+            laid = body_by_body if CARRIED[name][1] == "r" else instants_first
+            found = laid(self.rows_of(name))
+        elif name in KNOWN:
+            order = self._order
+            found = self._table[name][:, [*range(self._table.shape[1])] if order is None else order]
+        else:
+            raise AttributeError(name)
+        self.__dict__[name] = found
+        return found
+
+    def _found(self, name: str) -> Array:
+        if name in self.__dict__:
+            return super()._found(name)
+        if name in KNOWN:
+            return self._at_joint(name)
+        point, quantity = CARRIED[name]
+        arm = turned(self.rows_of("R"), self._beside[point][:, :, None])
+        if quantity == "r":
+            return self._at_joint("r") + arm
+        turn = cross(self.rows_of("omega"), arm)
+        if quantity == "v":
+            return self._at_joint("v") + turn
+        a = self._at_joint("a") + self._gravity[:, None]
+        return a + cross(self.rows_of("alpha"), arm) + cross(self.rows_of("omega"), turn)
+
+    def _at_joint(self, name: str) -> Array:
+        """One of the kernel's values by component."""
+        of_all = self._table[name]
+        return rows(of_all if self._order is None else of_all[:, self._order])
+
+
+KNOWN = frozenset({"R", "omega", "alpha"})
+# Fields of bodies: of which point they are, and what of it.
+CARRIED = {
+    "x": ("origin", "r"), "v": ("origin", "v"), "a": ("origin", "a"),
+    "centre": ("centre", "r"), "v_centre": ("centre", "v"), "a_centre": ("centre", "a"),
+}  # fmt: skip
+
+
 def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array] = NONE) -> BodyStates:
     """From the kernel's values at the joint points (accelerations less g) to those of origins and centres of mass.
 
@@ -87,18 +159,10 @@ def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array
     """
     bodies = layout.mechanism.bodies
     order = [layout.place[i] for i in range(len(bodies))]
-    rows = recovered.bodies[:, order]
-    R, r, w, v, alpha = (rows[name] for name in ("R", "r", "omega", "v", "alpha"))
-    a = rows["a"] + layout.mechanism.gravity
+    reference = layout.reference[order]
+    beside = {"origin": -reference, "centre": np.array([b.center for b in bodies]) - reference}
+    states = CarriedStates(recovered.bodies, order, layout.mechanism.gravity, beside)
     for i, axis in steady.items():
-        n = R[:, i] @ axis
-        alpha[:, i] -= np.sum(alpha[:, i] * n, axis=1, keepdims=True) * n
-
-    def of(points: Array) -> tuple[Array, Array, Array]:
-        arm = np.einsum("tnij,nj->tni", R, points)
-        turn = cross_rows(w, arm)
-        return r + arm, v + turn, a + cross_rows(alpha, arm) + cross_rows(w, turn)
-
-    x0, v0, a0 = of(-layout.reference[order])
-    xc, vc, ac = of(np.array([b.center for b in bodies]) - layout.reference[order])
-    return BodyStates(R, x0, v0, a0, w, alpha, xc, vc, ac)
+        n = states.R[:, i] @ axis
+        states.alpha[:, i] -= np.sum(states.alpha[:, i] * n, axis=1, keepdims=True) * n
+    return states

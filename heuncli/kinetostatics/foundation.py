@@ -17,17 +17,26 @@ from heuncli.kinetostatics.reactions import in_plane
 from heuncli.mechanism.model import Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Block, Mask
+from heuncli.shapes.by_component import cross, instants_first, turned
 from heuncli.shapes.rotations import cross_rows
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
     """m x_s.. and I sigma. + sigma x I sigma of every body, (n_t, n, 3), world axes."""
+    force, moment = map(instants_first, inertia_rows(mechanism, states))
+    return force, moment
+
+
+def inertia_rows(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
+    """The same by component, (n, 3, n_t)."""
     m = np.array([b.mass for b in mechanism.bodies])
-    inertia = np.array([b.inertia for b in mechanism.bodies])
+    J = np.array([b.inertia for b in mechanism.bodies])[..., None]
     w, u = states.turning
-    spin = np.einsum("nij,tnj->tni", inertia, u) + cross_rows(w, np.einsum("nij,tnj->tni", inertia, w))
-    loads = m[:, None] * states.a_centre, np.einsum("tnij,tnj->tni", states.R, spin)
-    return in_plane(*loads) if mechanism.planar else loads
+    spin = turned(states.rows_of("R"), turned(J, u) + cross(w, turned(J, w)))
+    force = m[:, None, None] * states.rows_of("a_centre")
+    if not mechanism.planar:
+        return force, spin
+    return force * np.array([[1.0], [1.0], [0.0]]), spin * np.array([[0.0], [0.0], [1.0]])
 
 
 def total(

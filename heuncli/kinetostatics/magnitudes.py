@@ -19,6 +19,7 @@ from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array, Block, Magnitudes
+from heuncli.shapes.by_component import form, instants_first, squares
 
 
 def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
@@ -26,29 +27,29 @@ def inertia_scale(mechanism: Mechanism, states: BodyStates) -> Array:
     m = np.array([body.mass for body in mechanism.bodies])
     w, u = states.turning
     spinning, turning = (_energy_like(mechanism, x) for x in (w, u))
-    speed = np.sqrt(np.sum(w * w, axis=2))
-    pieces = np.sqrt(m) * (speed * spinning + turning)
-    whole = m * np.sqrt(np.sum(states.a_centre**2, axis=2))
+    pieces = np.sqrt(m)[:, None] * (np.sqrt(squares(w)) * spinning + turning)
+    whole = m[:, None] * np.sqrt(squares(states.rows_of("a_centre")))
     weight = m * float(np.sqrt(np.sum(np.square(mechanism.gravity))))
-    return np.asarray(np.maximum(np.maximum(pieces, whole), weight))
+    return instants_first(np.maximum(np.maximum(pieces, whole), weight[:, None]))
 
 
 def _energy_like(mechanism: Mechanism, x: Array) -> Array:
-    """√(x·I x) of every body, x in body axes."""
+    """√(x·I x) of every body, (n, n_t), x in body axes by component."""
     inertia = np.array([body.inertia for body in mechanism.bodies])
-    return np.asarray(np.sqrt(np.maximum(np.einsum("tni,nij,tnj->tn", x, inertia, x), 0.0)))
+    return np.asarray(np.sqrt(np.maximum(form(x, inertia), 0.0)))
 
 
 def magnitudes(
-    mechanism: Mechanism, states: BodyStates, actions: Sequence[Action], energy: Block, size: float
+    mechanism: Mechanism, states: BodyStates, inertia: Array, actions: Sequence[Action], energy: Block, size: float
 ) -> Magnitudes:
     """The magnitudes at these instants; actions: of applied loads and of joints with their drives.
 
+    inertia: the largest inertia load of each body (`inertia_scale`).
     energy: kinetic, potential, work; empty where nobody asks for it.
     """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
     mass = [body.mass for body in mechanism.bodies]
-    force = _largest(inertia_scale(mechanism, states))
+    force = _largest(inertia)
     pushed = 0.0  # acceleration that an applied load alone would give
     for action in actions:
         acting = max(_largest(action.force), _largest(action.moment) / size)
@@ -78,4 +79,6 @@ def _least_gyration(mechanism: Mechanism, size: float) -> float:
 
 
 def _largest(values: Array) -> float:
-    return float(np.nanmax(np.abs(values), initial=0.0))
+    """The largest magnitude; what is open has none."""
+    found = float(np.abs(values).max(initial=0.0))
+    return found if found == found else float(np.nanmax(np.abs(values), initial=0.0))

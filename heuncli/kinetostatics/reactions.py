@@ -11,6 +11,8 @@ Loads by their causes are found by the same sums: their arrays have an axis of c
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -53,22 +55,41 @@ class StopLoad:
         return self.value[..., None] * self.unit[..., 3:]
 
 
+class JointPoints:
+    """The `to` points of joints, found all together when one is asked for."""
+
+    def __init__(self, joints: Sequence[Joint], states: BodyStates) -> None:
+        self.joints, self.states = joints, states
+
+    @cached_property
+    def positions(self) -> list[Array]:
+        """World positions, (n_t, 3) each."""
+        return self.states.point_positions([joint.b for joint in self.joints], [joint.q for joint in self.joints])
+
+
 @record
 class JointLoads:
     """Of one joint: ON `to`, world axes, moment about the `to` point `point`; (n_t, 3) [N], [N m].
 
+    points: of all joints, number: which of them this one's is.
     drive (n_t,): the driving torque or force ON `to` about or along `axis` (n_t, 3), not contained in force and moment
     but for a rod, whose force is the drive's. None where there is no drive or no axis. stops: beside force and moment.
     """
 
     joint: Joint
-    point: Array
+    points: JointPoints
+    number: int
     force: Array
     moment: Array
     axis: Array | None
     drive: Array | None
     tension: Array | None  # of a rod, (n_t,); None between the limits of a stop, which carry all there is
     stops: tuple[StopLoad, ...] = ()
+
+    @property
+    def point(self) -> Array:
+        """Where the `to` point is, (n_t, 3)."""
+        return self.points.positions[self.number]
 
     @property
     def drive_force(self) -> Array:
@@ -119,15 +140,17 @@ class Answers(Protocol):
         """multiplier (..., n_t, rows); f, m (n_t, rows, 3), closed (n_t, rows)."""
 
 
-def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[JointLoads]:
-    """Reactions of all joints, in the order of the spec."""
+def joint_loads(
+    layout: Layout, recovered: Answers, states: BodyStates, only: Collection[str] | None = None
+) -> list[JointLoads]:
+    """Reactions of all joints, in the order of the spec; only: of those of some names."""
     hang_of = {h.joint: (i, h) for i, h in enumerate(layout.spanning.hangs) if h.joint >= 0}
     driven = {freedom.joint: n for n, freedom in enumerate(layout.freedoms) if freedom.q < 0}
     forces, moments = recovered.bodies["joint_force"], recovered.bodies["joint_moment"]
-    joints = layout.mechanism.joints
-    points = states.point_positions([joint.b for joint in joints], [joint.q for joint in joints])
-    loads = []
-    for k, (joint, point) in enumerate(zip(joints, points, strict=True)):
+    joints = [(k, joint) for k, joint in enumerate(layout.mechanism.joints) if only is None or joint.name in only]
+    points = JointPoints([joint for _, joint in joints], states)
+    loads: list[JointLoads] = []
+    for k, joint in joints:
         kind = JOINTS[joint.kind]
         axis = states.direction(joint.a, joint.axis) if kind.has_axis else None
         drive = tension = None
@@ -135,7 +158,7 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
             i, h = hang_of[k]
             force, moment = forces[..., i, :], moments[..., i, :]
             if h.reverse:
-                arm = states.point_position(joint.a, joint.p) - point
+                arm = states.point_position(joint.a, joint.p) - points.positions[len(loads)]
                 force, moment = -force, -moment - cross_rows(arm, force)
             if k in driven:
                 drive = recovered.freedoms["drive"][..., driven[k]]
@@ -149,7 +172,7 @@ def joint_loads(layout: Layout, recovered: Answers, states: BodyStates) -> list[
         if layout.mechanism.planar:
             force, moment = in_plane(force, moment)
         stops = stop_loads(layout, k, recovered.rows)
-        loads.append(JointLoads(joint, point, force, moment, axis, drive, tension, stops))
+        loads.append(JointLoads(joint, points, len(loads), force, moment, axis, drive, tension, stops))
     return loads
 
 

@@ -45,14 +45,20 @@ def forms_of(spec: m.Spec, stages: Stages = ANEW) -> dict[str, Form]:
 
 
 def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechanism:
-    """The mechanism of a validated spec; forms: of the bodies that are built from shapes; stages: each body is one."""
+    """The mechanism of a validated spec; forms: of the bodies that are built from shapes.
+
+    stages: each body and each joint is one.
+    """
     index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
     joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
     drives = {drive.joint: drive for drive in spec.drives.values()}
     planar = spec.space == "planar"
     bodies = tuple(stages.run(body, b, forms.get(name), of=name) for name, b in spec.bodies.items())
     last = max(spec.analysis.times, default=0.0)
-    made = tuple(joint(j, index, drives.get(name), planar, last) for name, j in spec.joints.items())
+    made = tuple(
+        driven(stages.run(joint, j, index[j.a], index[j.b], planar, of=name), drives.get(name), last)
+        for name, j in spec.joints.items()
+    )
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
@@ -121,16 +127,21 @@ def with_values(drive: m.Drive, last: float) -> m.Drive:
     return replace(drive, value=integral(drive.value, last), by_rate=False, from_start=True)
 
 
-def joint(j: m.Joint[str, m.Vec], index: dict[str, int], drive: m.Drive | None, planar: bool, last: float) -> Joint:
-    """One joint with its drive, as what it is in the plane where that was declared; last: the end of the run [s]."""
+def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
+    """A joint with its drive; last: the end of the run [s]."""
+    return joint if drive is None else replace(joint, drive=with_values(drive, last))
+
+
+def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
+    """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
     axis = unit(j.axis)
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
-        a=index[j.a], p=np.array(j.p), b=index[j.b], q=np.array(j.q),
+        a=a, p=np.array(j.p), b=b, q=np.array(j.q),
         axis=axis, to_axis=unit(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
-        drive=with_values(drive, last) if drive is not None else None, restitution=j.restitution, bearing=j.bearing,
+        drive=None, restitution=j.restitution, bearing=j.bearing,
         p_name=j.p_name, q_name=j.q_name,
     )  # fmt: skip
 

@@ -8,14 +8,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.programs import Expression, pack_of
+from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.mechanism.model import Joint
 from heuncli.named_tuples import NamedTuple
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.stages import ANEW, Stages
+from heuncli.tree.frame import without_loads
+from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:
-    from heuncli.redundancy.self_stress import SelfStress
+    from heuncli.redundancy.self_stress import KnownStress, SelfStress
 
 
 class Redundancy(NamedTuple):
@@ -23,6 +30,7 @@ class Redundancy(NamedTuple):
 
     dependent: the same near the start, in a planar scene with those across the plane, which are not counted; closed:
     how many rows take part at the start. open: how many are left where joints give way; giving: what these do.
+    here: the self-stresses at the start.
     """
 
     generic: int
@@ -32,33 +40,45 @@ class Redundancy(NamedTuple):
     stress: SelfStress | None
     open: int
     giving: tuple[str, ...] = ()
+    here: KnownStress | None = None
 
 
-def redundancy(scene: PreparedScene, runner: Runner) -> Redundancy:
-    """Count what is held twice."""
-    layout = scene.layout
-    if not layout.rows:
+def redundancy(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> Redundancy:
+    """Count what is held twice: it hangs on no load, and is counted without any; stages: that is one."""
+    if not scene.layout.rows:
         return Redundancy(0, 0, 0, 0, None, 0)
-    from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
-    from heuncli.redundancy.self_stress import self_stress
+    drives = tuple(joint.drive.value for joint in scene.mechanism.joints if joint.drive is not None)
+    return stages.run(counted, without_loads(scene.layout), drives, runner.start_holding)
 
+
+def counted(layout: Layout, drives: tuple[Expression, ...], holding: Array) -> Redundancy:
+    """Count what is held twice in a scene with closed chains.
+
+    drives: whose programs it has; holding (contacts,): which are closed at the start.
+    """
+    from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
+    from heuncli.redundancy.self_stress import KnownStress, poses_of, self_stress, stress_of
+
+    layout = replace(layout, pack=pack_of(drives))
+    runner = Evaluator(layout, lambda _: holding)
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     closed = int(here.rows["closed"][0].sum())
     states = body_states(layout, here)
-    stress = self_stress(runner, here, states)
-    assert stress is not None
+    poses = poses_of(here, states)
+    stress = stress_of(runner, poses)
+    known = KnownStress(poses, stress)
     at_start, joints = int(stress.count[0]), layout.mechanism.joints
     near = neighbours(runner, 0.0, here.states[0], (tolerances.NEIGHBOUR,))
     if near is None:
         left, giving = left_open(stress, joints, states)
-        return Redundancy(at_start, at_start, int(stress.dependent[0]), closed, stress, left, giving)
+        return Redundancy(at_start, at_start, int(stress.dependent[0]), closed, stress, left, giving, known)
     around = body_states(layout, near)
     beside = self_stress(runner, near, around)
     assert beside is not None
     dependent = min(stress.dependent[0], beside.dependent.min())
     generic = int(min(at_start, beside.count.min()))
     left, giving = left_open(beside, joints, around)
-    return Redundancy(generic, at_start, int(dependent), closed, beside, min(generic, left), giving)
+    return Redundancy(generic, at_start, int(dependent), closed, beside, min(generic, left), giving, known)
 
 
 def left_open(stress: SelfStress, joints: Sequence[Joint], states: BodyStates) -> tuple[int, tuple[str, ...]]:

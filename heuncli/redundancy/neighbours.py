@@ -7,8 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.results import Array
 from heuncli.shapes.rotations import quaternion_product
 from heuncli.tree.layout import Layout
@@ -18,7 +17,7 @@ SEED = 1901  # fixed: the same scene gives the same verdicts
 
 
 def neighbours(
-    runner: Runner, t: float, state: Array, by: Sequence[float], holding: Array | None = None
+    runner: Evaluator, t: float, state: Array, by: Sequence[float], holding: Array | None = None
 ) -> Recovered | None:
     """Poses displaced by each of `by` (rad, or of the size) along fixed pseudo-random admissible rates, both ways.
 

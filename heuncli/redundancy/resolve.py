@@ -24,7 +24,7 @@ from heuncli.redundancy.open_components import (
     opened,
     wrench_open,
 )
-from heuncli.redundancy.self_stress import SelfStress, self_stress
+from heuncli.redundancy.self_stress import KnownStress, SelfStress, self_stress
 from heuncli.redundancy.split import Choice, split
 from heuncli.results import Array, Block, CertainSum, Indices
 
@@ -72,10 +72,15 @@ class Resolution:
 
 
 def resolve(
-    runner: Runner, recovered: Recovered, states: BodyStates, joints: list[JointLoads], least_norm: bool
+    runner: Runner,
+    recovered: Recovered,
+    states: BodyStates,
+    joints: list[JointLoads],
+    least_norm: bool,
+    known: KnownStress | None = None,
 ) -> Resolution:
-    """Find the self-stresses and apply the split that was asked for."""
-    stress = self_stress(runner, recovered, states)
+    """Find the self-stresses and apply the split that was asked for; known: those of poses that may be these."""
+    stress = self_stress(runner, recovered, states, known)
     if stress is None or not stress.count.any():
         return Resolution(joints, searched=stress)
     chosen = split(joints, states, stress, least_norm)

@@ -13,16 +13,16 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner
+from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.mechanism.model import GROUND
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.response import carried, jacobian
 from heuncli.results import Array, Indices, Mask
+from heuncli.spec.sharing import same
 from heuncli.tree.islands import mean_lever
 from heuncli.tree.layout import Island
-from heuncli.tree.tables import Table
 
 
 @record
@@ -49,22 +49,74 @@ class SelfStress:
         return np.asarray((np.abs(shares) / length > limit[:, None, :]).any(axis=-1))
 
 
-def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> SelfStress | None:
-    """All self-stresses at recovered states, island by island; None where there can be none (no closed chain)."""
-    layout = runner.layout
-    if not layout.rows:
+@record
+class Poses:
+    """All that the self-stresses of a scene hang on at some instants: no load, and nothing that answers one.
+
+    times (n_t,) [s], states (n_t, n), gap (n_t,) as in Recovered; closed, chosen (n_t, rows), f, m (n_t, rows, 3): of
+    the closure rows; R (n_t, n_b, 3, 3), x (n_t, n_b, 3): of the bodies.
+    """
+
+    times: Array
+    states: Array
+    gap: Array
+    closed: Array
+    chosen: Array
+    f: Array
+    m: Array
+    R: Array
+    x: Array
+
+    def point_position(self, body: int, point: Array) -> Array:
+        """World position of a body's point, (n_t, 3)."""
+        return self.x[:, body] + self.R[:, body] @ point if body != GROUND else np.broadcast_to(point, (len(self.x), 3))
+
+
+@record
+class KnownStress:
+    """The self-stresses of some poses, found before."""
+
+    poses: Poses
+    stress: SelfStress
+
+
+def poses_of(recovered: Recovered, states: BodyStates) -> Poses:
+    """What self-stresses hang on at recovered states."""
+    rows = recovered.rows
+    return Poses(
+        recovered.times, recovered.states, recovered.gap, rows["closed"], rows["chosen"], rows["f"], rows["m"],
+        states.R, states.x,
+    )  # fmt: skip
+
+
+def self_stress(
+    runner: Evaluator, recovered: Recovered, states: BodyStates, known: KnownStress | None = None
+) -> SelfStress | None:
+    """All self-stresses at recovered states, island by island; None where there can be none (no closed chain).
+
+    known: of the same scene, loaded in any way; they are taken where the poses are the same to the bit.
+    """
+    if not runner.layout.rows:
         return None
-    n_t = len(recovered.times)
-    J = jacobian(runner.workspace, layout, recovered.times, recovered.states)
+    poses = poses_of(recovered, states)
+    if known is not None and same(poses, known.poses):
+        return known.stress
+    return stress_of(runner, poses)
+
+
+def stress_of(runner: Evaluator, poses: Poses) -> SelfStress:
+    """All self-stresses of poses."""
+    layout, n_t = runner.layout, len(poses.times)
+    J = jacobian(runner.workspace, layout, poses.times, poses.states)
     columns: list[Array] = []
     counts = np.zeros(n_t, dtype=int)
     least, left = np.ones(n_t), np.zeros(n_t)
     for island in layout.islands:
-        rows = recovered.rows[:, island.rows]
-        null, values = _null_space(J.block(island.rows, island.freedoms), island, rows)
-        counts += (rows["closed"] - rows["chosen"]).sum(axis=1).astype(int)
+        closed, chosen = poses.closed[:, island.rows], poses.chosen[:, island.rows]
+        null, values = _null_space(J.block(island.rows, island.freedoms), island, closed, chosen)
+        counts += (closed - chosen).sum(axis=1).astype(int)
         least = np.minimum(least, values.kept)
-        feigned = tolerances.RANK_OF_GAP * recovered.gap / island.length
+        feigned = tolerances.RANK_OF_GAP * poses.gap / island.length
         left = np.maximum(left, np.where(values.left > feigned, values.left, 0.0))
         Z = np.zeros((n_t, len(layout.rows), null.shape[2]))
         Z[:, island.rows] = null
@@ -72,7 +124,7 @@ def self_stress(runner: Runner, recovered: Recovered, states: BodyStates) -> Sel
     Z = np.concatenate(columns, axis=2)
     dependent = counts
     length = mean_lever(layout, range(len(layout.mechanism.joints)))
-    shares = _shares(runner, recovered, states, Z)
+    shares = _shares(runner, poses, Z)
     size = np.array([1.0, 1.0, 1.0, length, length, length])[:, None]
     if layout.mechanism.planar:
         # what does not exist cannot be open
@@ -91,7 +143,7 @@ class Values(NamedTuple):
     left: Array
 
 
-def _null_space(J: Array, island: Island, rows: Table) -> tuple[Array, Values]:
+def _null_space(J: Array, island: Island, closed: Array, chosen: Array) -> tuple[Array, Values]:
     """Null vectors of J' on the island's rows (n_t, m, k_max), of which as many are `chosen` (n_t, m) as its rank.
 
     A contact that is open carries nothing: it gives way along a direction of its own, and no self-stress loads it.
@@ -100,8 +152,7 @@ def _null_space(J: Array, island: Island, rows: Table) -> tuple[Array, Values]:
     measure = np.where(island.couples, L, 1.0)[:, None]
     J = J * measure / np.where(island.turns, L, 1.0)
     unit = np.maximum(np.sqrt(np.sum(J * J, axis=2)), 1.0)[:, :, None]
-    J, chosen = J / unit, rows["chosen"]
-    apart = rows["closed"] == 0.0
+    J, apart = J / unit, closed == 0.0
     if apart.any():
         J = np.concatenate([np.where(apart[:, :, None], 0.0, J), np.eye(len(island.rows)) * apart[:, None, :]], axis=2)
         chosen = chosen + apart
@@ -136,7 +187,7 @@ def _null_of(J: Array, rank: Indices) -> tuple[Array, Values]:
     return Z, values
 
 
-def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) -> Array:
+def _shares(runner: Evaluator, poses: Poses, Z: Array) -> Array:
     """Shares of multipliers Z (n_t, rows, k) in every joint with its drive and its stops, (n_j, n_t, 6, k).
 
     A joint of the tree balances what hangs on it; a cut one carries its rows; stops carry theirs beside it.
@@ -145,7 +196,7 @@ def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) 
     joints, hangs = layout.mechanism.joints, layout.spanning.hangs
     n_t, _, k = Z.shape
     shares = np.zeros((len(joints), n_t, 6, k))
-    loads = carried(runner.workspace, recovered.times, recovered.states, Z.transpose(0, 2, 1), len(hangs))
+    loads = carried(runner.workspace, poses.times, poses.states, Z.transpose(0, 2, 1), len(hangs))
     places = [i for i, h in enumerate(hangs) if h.joint >= 0]
     of_tree = [hangs[i].joint for i in places]
     moment_and_force = loads[:, :, places].transpose(2, 0, 3, 1)
@@ -153,12 +204,12 @@ def _shares(runner: Runner, recovered: Recovered, states: BodyStates, Z: Array) 
     for h in hangs:
         if h.reverse:  # the load is ON `from`, and about its point
             joint = joints[h.joint]
-            arm = states.point_position(joint.a, joint.p) - states.point_position(joint.b, joint.q)
+            arm = poses.point_position(joint.a, joint.p) - poses.point_position(joint.b, joint.q)
             force = shares[h.joint, :, :3]
             shares[h.joint, :, 3:] += np.cross(arm[:, :, None], force, axis=1)
             shares[h.joint] *= -1.0
     rows = np.array(layout.rows)
-    unit = np.concatenate([recovered.rows["f"], recovered.rows["m"]], axis=2).transpose(0, 2, 1)
+    unit = np.concatenate([poses.f, poses.m], axis=2).transpose(0, 2, 1)
     for k in dict.fromkeys(layout.rows):
         own = np.flatnonzero(rows == k)
         shares[k] += unit[:, :, own] @ Z[:, own]

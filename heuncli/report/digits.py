@@ -106,7 +106,7 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     motion = _relative(results, "motion")
     errors["motion", "m"] = motion * of.size
     errors["motion", "rad"] = motion * max(scales.get(("motion", "rad"), 0.0), 1.0)
-    lost = _rounding(of)
+    lost = lost_by_rounding(of)
     load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
     if load > 0.0:  # stresses are in proportion to what makes them
         stress = scales.get(("sections", "Pa"), 0.0) / load
@@ -163,7 +163,7 @@ def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units
     return certain._replace(errors={**certain.errors, **own})
 
 
-def _rounding(of: Magnitudes) -> dict[str, float]:
+def lost_by_rounding(of: Magnitudes) -> dict[str, float]:
     """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
     lost = {unit: tolerances.WRITTEN * scale for unit, scale in of.by_unit.items()}
     far = tolerances.GAP_ROUNDING * of.reach

@@ -19,7 +19,6 @@ from heuncli.spec.overrides import of_words, override, taken_in_si
 from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
-from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.spec.resolve import Meaning, resolve
 from heuncli.spec.rules.every import RULES, DraftDocument, Rule, Violation, violations
 from heuncli.spec.semantics import instants_of
@@ -29,6 +28,7 @@ from heuncli.spec.verdicts import is_primary
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from heuncli.spec.named_files import NamedFiles
     from heuncli.spec.tables import Wrong
 
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
@@ -79,9 +79,16 @@ class Loading:
     """One spec on its way; gathers problems as it goes."""
 
     def __init__(
-        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+        self,
+        path: str,
+        source: SourceFile,
+        overrides: Mapping[str, str],
+        checking: bool,
+        case: str | None,
+        files: NamedFiles | None = None,
     ) -> None:
-        self.path, self.source, self.checking, self.case = path, source, checking, case
+        """files: those that the spec names; None: they stand beside it."""
+        self.path, self.source, self.checking, self.case, self.files = path, source, checking, case, files
         self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
@@ -128,7 +135,7 @@ class Loading:
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
         parameters, given = self.parameters()
-        names = Names.of(self.data)
+        names = self.names()
         scope = Scope(parameters, given=given)
         tables = self.tables(scope)
         in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
@@ -146,7 +153,11 @@ class Loading:
         warnings = tuple(in_order(self.warnings))
         source = self.source
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
-        return resolve(draft.document, meaning)
+        return self.meant(draft.document, meaning)
+
+    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
+        """The scene that the document means."""
+        return resolve(document, meaning)
 
     def reader(self, context: Context) -> Reader:
         """What reads the entries, whose values may refer to the context."""
@@ -156,6 +167,10 @@ class Loading:
         """What of the document breaks a rule."""
         return violations(self.rules, draft)
 
+    def names(self) -> Names:
+        """What is named in the spec."""
+        return Names.of(self.data)
+
     def evaluated(self) -> Parameters:
         """The parameters of the spec."""
         return evaluate_parameters(self.block("parameters"))
@@ -164,7 +179,7 @@ class Loading:
         """The table of an entry, or what is wrong with it."""
         from heuncli.spec.tables import build_table  # with csv 2 ms that few scenes need
 
-        return build_table(name, entry, scope, self.folder)
+        return build_table(name, entry, scope, self.named_files())
 
     def parameters(self) -> tuple[dict[str, float | None], dict[str, GivenParameter]]:
         """Values of the parameters, None for those in error; and those that have a dimension."""
@@ -178,15 +193,13 @@ class Loading:
         entries = self.block("tables")
         if not entries:
             return {}
-        from heuncli.spec.tables import outside_folder  # as above
-
         reader = self.reader(Context(scope, scope))
         tables: dict[str, TableFunction | None] = {}
         for name, data in entries.items():
             path = ("tables", name)
             entry = reader.model(path, data, f.TableEntry)
             tables[name], wrong = self.table(name, entry, scope) if entry is not None else (None, [])
-            if entry is not None and entry.file is not None and (told := outside_folder(self.folder, entry.file)):
+            if entry is not None and entry.file is not None and (told := self.named_files().outside(entry.file)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
             self.report_read(path, wrong)
         return tables
@@ -198,28 +211,28 @@ class Loading:
             return {}
         from heuncli.spec.measured import build_curve  # as for tables
         from heuncli.spec.rules.curves import abscissa
-        from heuncli.spec.tables import outside_folder
 
         instants = instants_of(draft.document) if self.checking else ()
         run = (min(instants), max(instants)) if len(instants) > 1 else None
         curves: dict[int, Curve] = {}
         for i, item in asked.items():
-            path, file = ("expect", i), str(item.curve)
+            path = ("expect", i)
             across = abscissa(item, draft)
-            curve, wrong = build_curve(item, None if across is None else str(item.x), run, self.folder)
+            curve, wrong = build_curve(item, None if across is None else str(item.x), run, self.named_files())
             if curve is not None:
                 curves[i] = curve
-            if told := outside_folder(self.folder, file):
+            if told := self.named_files().outside(str(item.curve)):
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "curve")), told.hint))
             self.report_read(path, wrong)
         return curves
 
-    @property
-    def folder(self) -> Path:
-        """Where the files that a spec names are looked for."""
-        from pathlib import Path  # 3 ms that few scenes need
+    def named_files(self) -> NamedFiles:
+        """The files that the spec names."""
+        if self.files is None:
+            from heuncli.spec.named_files import NamedFiles  # with pathlib 3 ms that few scenes need
 
-        return Path() if self.path == STANDARD_INPUT else Path(self.path).parent
+            self.files = NamedFiles(self.path)
+        return self.files
 
     def report_read(self, path: Path_, wrong: Sequence[Wrong]) -> None:
         """Add what is wrong with an entry that names a file: at its keys, or in the file."""

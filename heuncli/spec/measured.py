@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
@@ -14,14 +13,15 @@ from heuncli.number_range import are_in_range, out_of_range
 from heuncli.spec.columns import Columns, rows_of
 from heuncli.spec.format import ExpectEntry
 from heuncli.spec.models import Curve
-from heuncli.spec.tables import Wrong, from_file, text_of, unit_size
+from heuncli.spec.named_files import NamedFiles
+from heuncli.spec.tables import Wrong, from_file, unit_size
 
 ONE_POINT = "a curve has two points at least; one number is expected by at: and is:"
 ASCENDING = "sort the rows by x, and keep one of each"
 
 
 def build_curve(
-    item: ExpectEntry, x_of: str | None, run: tuple[float, float] | None, folder: Path
+    item: ExpectEntry, x_of: str | None, run: tuple[float, float] | None, files: NamedFiles
 ) -> tuple[Curve | None, list[Wrong]]:
     """The curve of an expectation, or what is wrong with it.
 
@@ -30,15 +30,15 @@ def build_curve(
     assert item.curve is not None
     wrong: list[Wrong] = []
     sizes = [unit_size(key, getattr(item, key), wrong) for key in ("x_unit", "y_unit")]
-    columns = columns_in(item, x_of, folder, wrong)
+    columns = columns_in(item, x_of, files, wrong)
     if columns is None or wrong:
         return None, wrong
     for column, size in zip(columns, sizes, strict=True):
         values = np.frombuffer(column)  # the same memory
         with np.errstate(over="ignore"):  # judged below, with its line
             values *= size
-    file = str(folder / item.curve)
-    lines = lines_of(text_of(folder / item.curve), len(columns[0]))
+    file = str(files.path(item.curve))
+    lines = lines_of(files.text(item.curve), len(columns[0]))
     found = next(faults(columns, sizes, None if x_of is not None else run), None)
     if found is not None:
         i, finding = found
@@ -47,16 +47,16 @@ def build_curve(
     return Curve(file, columns[0], columns[1], lines, x_of, within), []
 
 
-def columns_in(item: ExpectEntry, x_of: str | None, folder: Path, wrong: list[Wrong]) -> Columns | None:
+def columns_in(item: ExpectEntry, x_of: str | None, files: NamedFiles, wrong: list[Wrong]) -> Columns | None:
     """The columns as they stand in the file; what x is a path of stands in the column of its name, or in the first."""
     assert item.curve is not None
     given = item.x if item.x is not None else 1
     y = item.y if item.y is not None else 2
     found: list[Wrong] = []
-    columns = from_file((given, y), item.curve, folder, found)
+    columns = from_file((given, y), item.curve, files, found)
     if x_of is not None and any(one.keys == ("x",) for one in found):
         found = []
-        columns = from_file((1, y), item.curve, folder, found)
+        columns = from_file((1, y), item.curve, files, found)
     wrong += [Wrong(("curve",) if one.keys == ("file",) else one.keys, one.finding, one.location) for one in found]
     return columns
 

@@ -37,12 +37,9 @@ class Meaning:
     case: str | None
 
 
-def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
-    """The scene that a document without errors means."""
-    r = Resolver(document, meaning.locations, meaning.curves)
-    analysis = document.analysis
-    instants = instants_of(document)
-    kind = type_of(document)
+def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
+    """The scene that a document without errors means; by: what follows the references, one of them by default."""
+    r = by or Resolver(document, meaning.locations, meaning.curves)
     return m.Spec(
         title=titled(document, meaning.case),
         path=meaning.path,
@@ -51,24 +48,18 @@ def resolve(document: f.Document, meaning: Meaning) -> m.Spec:
         parameters=meaning.parameters,
         gravity=document.head.gravity,
         ground=m.Ground(document.ground.points),
-        bodies={name: r.body(name, body) for name, body in document.bodies.items()},
-        joints={name: r.joint(name, joint) for name, joint in document.joints.items()},
-        drives={name: r.drive(name, drive) for name, drive in document.drives.items()},
-        forces={name: r.force(name, force) for name, force in document.forces.items()},
-        impulses={name: r.impulse(name, blow) for name, blow in document.impulses.items()},
-        stops={name: stop(name, given) for name, given in document.stops.items()},
-        sections={name: r.section(section) for name, section in document.sections.items()},
+        bodies=r.entries("bodies", "body"),
+        joints=r.entries("joints", "joint"),
+        drives=r.entries("drives", "drive"),
+        forces=r.entries("forces", "force"),
+        impulses=r.entries("impulses", "impulse"),
+        stops=r.entries("stops", "stop"),
+        sections=r.entries("sections", "section"),
         tables=meaning.tables,
-        analysis=m.Analysis(
-            kind, instants, instants[-1] if kind == "motion" else None,
-            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
-            analysis.step,
-            r.conditions(analysis),
-            analysis.tolerance is not None,
-        ),
+        analysis=r.single("analysis"),
         report=tuple(document.head.report) if document.head.report is not None else None,
         foundation=m.Foundation(r.about(document.foundation.about)),
-        expect=tuple(r.expect(i, item) for i, item in document.expect.items()),
+        expect=tuple(r.entries("expect", "expect").values()),
         cases={name: case.title for name, case in document.cases.items()},
         case=meaning.case,
         warnings=meaning.warnings,
@@ -92,6 +83,26 @@ class Resolver:
     ) -> None:
         self.document, self.locations, self.curves = document, locations, curves
 
+    def entries(self, block: str, by: str) -> dict[Any, Any]:
+        """What the entries of a block mean; by: the method that tells it of one."""
+        made = getattr(self, by)
+        return {name: made(name, entry) for name, entry in getattr(self.document, block).items()}
+
+    def single(self, by: str) -> Any:
+        """What the document as a whole means; by: the method that tells it."""
+        return getattr(self, by)()
+
+    def analysis(self) -> m.Analysis:
+        analysis, kind = self.document.analysis, type_of(self.document)
+        instants = instants_of(self.document)
+        return m.Analysis(
+            kind, instants, instants[-1] if kind == "motion" else None,
+            analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
+            analysis.step,
+            self.conditions(analysis),
+            analysis.tolerance is not None,
+        )  # fmt: skip
+
     def point(self, body: str, name: str) -> m.Vec:
         points = self.document.ground.points if body == GROUND else self.document.bodies[body].points
         return points[name]
@@ -103,7 +114,8 @@ class Resolver:
         return m.End(end.body, end.at)
 
     def placed(self, value: Expression, path: str) -> Expression:
-        return value.at(self.locations[path]) if path in self.locations else value
+        location = self.locations.get(path)
+        return value.at(location) if location is not None else value
 
     def vector(self, values: tuple[Expression, Expression, Expression], path: str, key: str = "vector") -> m.Vector:
         x, y, z = (self.placed(value, f"{path}.{key}.{i}") for i, value in enumerate(values))
@@ -232,7 +244,7 @@ class Resolver:
             when = m.Condition(path, blow.when.source.strip(), False, self.placed(blow.when, f"{path}.when"))
         return m.Blow(name, body, point, vector, in_body, blow.time, kind, when, blow.every)
 
-    def section(self, section: f.SectionEntry) -> m.Section:
+    def section(self, _: str, section: f.SectionEntry) -> m.Section:
         body = self.document.bodies[section.body]
         at, start, end = (point_in(body, at_or_name) for at_or_name in (section.at, section.from_, section.to))
         normal = section.normal
@@ -278,13 +290,11 @@ class Resolver:
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
 
-
-def stop(name: str, given: f.StopEntry) -> m.Stop[str]:
-    """A stop that limits one coordinate."""
-    found = limits_of(given)
-    assert found is not None
-    quantity, (low, high) = found
-    return m.Stop(name, given.joint, quantity, low, high, given.restitution)
+    def stop(self, name: str, given: f.StopEntry) -> m.Stop[str]:
+        found = limits_of(given)
+        assert found is not None
+        quantity, (low, high) = found
+        return m.Stop(name, given.joint, quantity, low, high, given.restitution)
 
 
 def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:

@@ -50,6 +50,8 @@ def shared(new: T, old: T) -> T:
 
 def shared_entries(new: Mapping[str, Any], old: Mapping[str, Any]) -> Mapping[str, Any]:
     """The old mapping where the new one is the same, else the new one with the old values that are."""
+    if new is old:
+        return old
     found = {key: shared(value, old.get(key)) for key, value in new.items()}
     unchanged = [*found] == [*old] and all(found[key] is old[key] for key in found)
     return old if unchanged else found

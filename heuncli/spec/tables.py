@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from array import array
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 
@@ -18,11 +16,9 @@ from heuncli.number_range import are_in_range, out_of_range
 from heuncli.records import record, replace
 from heuncli.spec.columns import Columns, CsvError, NoColumn, columns_of
 from heuncli.spec.format import TableEntry
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.quantity import Scope, number
-from heuncli.spec.reading import read_bytes
 
-LARGEST = 200_000_000  # bytes: two million rows of a hundred characters
-RELATIVE = "a path is relative to the spec's folder"
 # what to do about it
 SLOPES = "keep x and y within some ten powers of ten, in units of their own: x_unit, y_unit"
 CONSTANT = "a value that does not change is a parameter"
@@ -37,10 +33,12 @@ class Wrong:
     location: SourceLocation | None = None
 
 
-def build_table(name: str, entry: TableEntry, scope: Scope, folder: Path) -> tuple[TableFunction | None, list[Wrong]]:
+def build_table(
+    name: str, entry: TableEntry, scope: Scope, files: NamedFiles
+) -> tuple[TableFunction | None, list[Wrong]]:
     """The table of an entry, or what is wrong with it."""
     wrong = [Wrong(("ends",), told) for told in ends_of(entry)]
-    columns = in_si(entry, scope, folder, wrong)
+    columns = in_si(entry, scope, files, wrong)
     if columns is None or wrong:
         return None, wrong
     x, y = columns
@@ -73,7 +71,7 @@ def ends_of(entry: TableEntry) -> Iterator[Finding]:
         )
 
 
-def in_si(entry: TableEntry, scope: Scope, folder: Path, wrong: list[Wrong]) -> Columns | None:
+def in_si(entry: TableEntry, scope: Scope, files: NamedFiles, wrong: list[Wrong]) -> Columns | None:
     """The columns x and y of an entry in SI, from its file or its lists; what is wrong is added."""
     sizes = [unit_size(key, getattr(entry, key), wrong) for key in ("x_unit", "y_unit")]
     if entry.file is not None:
@@ -82,7 +80,7 @@ def in_si(entry: TableEntry, scope: Scope, folder: Path, wrong: list[Wrong]) -> 
             wrong.append(Wrong((), Finding("table-form", "both a file and lists of numbers", hint)))
             return None
         wanted = (entry.x if entry.x is not None else 1, entry.y if entry.y is not None else 2)
-        columns = from_file(wanted, entry.file, folder, wrong)
+        columns = from_file(wanted, entry.file, files, wrong)
         for column, size in zip(columns or (), sizes, strict=False):
             values = np.frombuffer(column)  # the same memory
             with np.errstate(over="ignore"):  # judged below, with its place
@@ -166,11 +164,10 @@ def shape_of(x: array[float], y: array[float], entry: TableEntry) -> Iterator[Wr
         yield Wrong(("period",), Finding("table-period", message, "the last point repeats the first, one period on"))
 
 
-def from_file(wanted: tuple[object, object], file: str, folder: Path, wrong: list[Wrong]) -> Columns | None:
+def from_file(wanted: tuple[object, object], file: str, files: NamedFiles, wrong: list[Wrong]) -> Columns | None:
     """The columns x and y of a CSV file by their names or numbers, as they stand there."""
-    path = folder / file
     try:
-        text = text_of(path)
+        text = files.text(file)
     except Finding as finding:
         wrong.append(Wrong(("file",), finding))
         return None
@@ -179,36 +176,9 @@ def from_file(wanted: tuple[object, object], file: str, folder: Path, wrong: lis
     except NoColumn as error:
         key = ("x", "y")[error.number]
         absent = error.finding
-        message = f"{absent.message} in '{path}'"
+        message = f"{absent.message} in '{files.path(file)}'"
         wrong.append(Wrong((key,), Finding(absent.code, message, absent.hint)))
         return None
     except CsvError as error:
-        wrong.append(Wrong(("file",), error.finding, SourceLocation(str(path), error.line, error.column)))
+        wrong.append(Wrong(("file",), error.finding, SourceLocation(str(files.path(file)), error.line, error.column)))
         return None
-
-
-def outside_folder(folder: Path, file: str) -> Finding | None:
-    """What to say of a file that does not stand in the spec's folder, or below it; links count by where they lead."""
-    try:
-        home, given = os.path.realpath(folder), os.path.abspath(folder / file)  # noqa: PTH100  # Path's loop in circles
-        leads_to = os.path.realpath(given)
-    except (OSError, ValueError):  # no working folder, no name of a file: told where it is read
-        return None
-    if Path(leads_to).is_relative_to(home):
-        return None
-    led = f", which is {leads_to}" if Path(given).is_relative_to(home) else ""
-    hint = "copy it beside the spec: whoever runs that then knows what is read"
-    return Finding("outside-folder", f"reads a file outside the spec's folder: {file}{led}", hint)
-
-
-def text_of(path: Path) -> str:
-    """The text of a file of a table. Raises Finding."""
-    try:
-        return read_bytes(str(path), LARGEST).decode("utf-8-sig")
-    except UnicodeDecodeError:
-        reason, code, hint = "it is not UTF-8", "table-file", "save it as CSV in UTF-8"
-    except Finding as refused:
-        is_large = refused.code == "too-large"
-        reason, code = refused.message, refused.code if is_large else "table-file"
-        hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE
-    raise Finding(code, f"the file '{path}' cannot be read: {reason}", hint)

@@ -11,8 +11,9 @@ Impure: reads the spec's file and those of its tables, when it is made; a table 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any, cast
 
@@ -26,15 +27,20 @@ from heuncli.spec.document import Reader
 from heuncli.spec.entries import Entry
 from heuncli.spec.fields import Context
 from heuncli.spec.load import Loading
-from heuncli.spec.lookups import Log, Lookup, Watched, WatchedFields, changed
+from heuncli.spec.lookups import Log, Lookup, Watched, WatchedDocument, changed, changed_in_document
 from heuncli.spec.models import Spec
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.names import Names, mapping
 from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.quantity import Scope
+from heuncli.spec.resolve import Meaning, Resolver, resolve
 from heuncli.spec.rules.every import DraftDocument, Rule, Violation
 from heuncli.spec.sharing import same, shared, shared_entries
 from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.tables import Wrong
+
+WHOLE = ("title", "space", "gravity", "ground", "report", "foundation", "expect", "cases", "warnings")  # of a scene
+MOST_PLANS = 1024  # of rules to be applied again, by what differs: most variants differ in the same
 
 
 class SpecVariants:
@@ -47,12 +53,13 @@ class SpecVariants:
         overrides: Mapping[str, str] | None = None,
         checking: bool = True,
         case: str | None = None,
+        files: NamedFiles | None = None,
     ) -> None:
-        """Read the spec as `load` does; overrides: those of all variants. Raises SpecError."""
+        """Read the spec as `load` does; overrides: those of all variants; files: those it names. Raises SpecError."""
         begin_file()
         self.overrides = dict(overrides or {})
         source = read(str(path), text)
-        self._first = FirstReading(str(path), source, self.overrides, checking, case)
+        self._first = FirstReading(str(path), source, self.overrides, checking, case, files)
         self.spec = self._first.spec()
 
     def load(self, overrides: Mapping[str, str]) -> Spec:
@@ -66,7 +73,22 @@ class SpecVariants:
             return LaterReading(first, given).spec()
         except SpecError:
             begin_file()
-            return Loading(first.path, first.source, given, first.checking, first.case).spec()
+            return Loading(first.path, first.source, given, first.checking, first.case, first.files).spec()
+
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names which no entry and no table looks up, nor another parameter that one does.
+
+        What is expected of the results does not count.
+        """
+        first = self._first
+        read = [kept.lookups for path, kept in first.entries.items() if path[:1] != ("expect",)]
+        read += [kept.lookups for kept in first.built.values()]
+        used: set[object] = set()
+        waiting: set[object] = {lookup.key for lookups in read for lookup in lookups if lookup.of == "parameters"}
+        while waiting:
+            used |= waiting
+            waiting = {name for one in waiting for name in first.known.uses.get(str(one), ())} - used
+        return frozenset(name for name in names if name in first.known.uses and name not in used)
 
 
 class KeptEntry(NamedTuple):
@@ -92,24 +114,53 @@ class KeptVerdict(NamedTuple):
     lookups: frozenset[Lookup] | None
 
 
+Verdicts = list[tuple[Rule, tuple[Violation, ...] | None]]
+
+
+class KeptMeaning(NamedTuple):
+    """What a part of the document means, and what of it was looked at."""
+
+    value: Any
+    lookups: frozenset[Lookup]
+
+
 class FirstReading(Loading):
     """The reading that writes down what everything hangs on."""
 
     def __init__(
-        self, path: str, source: SourceFile, overrides: Mapping[str, str], checking: bool, case: str | None
+        self,
+        path: str,
+        source: SourceFile,
+        overrides: Mapping[str, str],
+        checking: bool,
+        case: str | None,
+        files: NamedFiles | None,
     ) -> None:
-        super().__init__(path, source, overrides, checking, case)
+        super().__init__(path, source, overrides, checking, case, files)
         self.log = Log()
         self.entries: dict[Path_, KeptEntry] = {}
         self.with_shapes: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # as read, and with its shapes
         self.built: dict[str, KeptTable] = {}
         self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
         self.verdicts: list[KeptVerdict] = []
+        self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
+        self.below: dict[frozenset[Path_], list[Path_]] = {}
+        self.plans: dict[frozenset[Lookup], Verdicts] = {}
 
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
         self.resolved = super().spec()
         return self.resolved
+
+    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
+        """The scene that the document means, of which every part is kept."""
+        self.curved = meaning.curves
+        return resolve(document, meaning, FirstResolver(self, document, meaning))
+
+    def names(self) -> Names:
+        """What is named in the spec."""
+        self.named = super().names()
+        return self.named
 
     def evaluated(self) -> Parameters:
         """The parameters, which are kept with what each of them uses."""
@@ -137,8 +188,7 @@ class FirstReading(Loading):
 
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """What of the document breaks a rule."""
-        self.draft = draft
-        document = cast(f.Document, WatchedFields("document", draft.document, self.log))
+        self.draft, self.watched = draft, cast(f.Document, WatchedDocument("document", draft.document, self.log))
         unread = cast("frozenset[str]", Watched("unread", dict.fromkeys(draft.unread), self.log))
         entries, points, joints = (
             cast("dict[str, Any]", Watched(f"names.{of}", getattr(draft.names, of), self.log, inner=of == "entries"))
@@ -147,7 +197,7 @@ class FirstReading(Loading):
         for rule in self.rules:
             found, lookups = tuple(rule.check(draft)), None
             # what the names gather as they are asked is gathered for each rule: each looks up all that it hangs on
-            looking = DraftDocument(document, Names(entries, points, joints, {}), unread, {})
+            looking = DraftDocument(self.watched, Names(entries, points, joints, {}), unread, {})
             self.log.taken()
             with suppress(Exception):  # a rule that asks for more than is watched is not kept
                 lookups = self.log.taken() if tuple(rule.check(looking)) == found else None
@@ -159,6 +209,24 @@ class FirstReading(Loading):
         self.placed = self.places()
         self.located = super().locations()
         return self.located
+
+    def standing(self, differing: frozenset[Lookup]) -> Verdicts:
+        """Where something differs: the rules and what they found, None where they may find something else."""
+        if differing not in self.plans:
+            if len(self.plans) == MOST_PLANS:
+                self.plans.clear()
+            plan = [
+                (rule, kept.violations if kept.lookups is not None and kept.lookups.isdisjoint(differing) else None)
+                for rule, kept in zip(self.rules, self.verdicts, strict=True)
+            ]
+            self.plans[differing] = [(rule, found) for rule, found in plan if found is None or found]
+        return self.plans[differing]
+
+    def places_in(self, paths: frozenset[Path_]) -> list[Path_]:
+        """The places that stand at or below some paths."""
+        if paths not in self.below:
+            self.below[paths] = [p for p in self.placed if any(p[: len(each)] == each for each in paths)]
+        return self.below[paths]
 
 
 class FirstReader(Reader):
@@ -184,24 +252,69 @@ class FirstReader(Reader):
         return whole
 
 
+class FirstResolver(Resolver):
+    """Follows references, and keeps what each part of the scene hangs on."""
+
+    def __init__(self, first: FirstReading, document: f.Document, meaning: Meaning) -> None:
+        super().__init__(document, meaning.locations, meaning.curves)
+        self.first = first
+        locations, curves = (Watched(of, getattr(meaning, of), first.log) for of in ("locations", "curves"))
+        self.looking = Resolver(first.watched, locations, curves)
+
+    def entries(self, block: str, by: str) -> dict[Any, Any]:
+        """What the entries of a block mean."""
+        meant = super().entries(block, by)
+        for name, value in meant.items():
+            self._keep((block, name), value, partial(self._again, block, by, name))
+        return meant
+
+    def _again(self, block: str, by: str, name: Any) -> Any:
+        """What an entry means, by one that looks at it."""
+        return getattr(self.looking, by)(name, getattr(self.first.watched, block)[name])
+
+    def single(self, by: str) -> Any:
+        """What the document as a whole means."""
+        value = super().single(by)
+        self._keep((by, None), value, lambda: self.looking.single(by))
+        return value
+
+    def _keep(self, key: tuple[str, Any], value: Any, again: Callable[[], Any]) -> None:
+        self.first.log.taken()
+        with suppress(Exception):
+            if same(again(), value):
+                self.first.meanings[key] = KeptMeaning(value, self.first.log.taken())
+
+
 class LaterReading(Loading):
     """A reading with other values, which takes from the first one what stands."""
 
     def __init__(self, first: FirstReading, overrides: Mapping[str, str]) -> None:
         self.first = first
-        super().__init__(first.path, first.source, overrides, first.checking, first.case)
+        super().__init__(first.path, first.source, overrides, first.checking, first.case, first.files)
 
     def completed(self, given: dict[str, Any]) -> dict[str, Any]:
         """The data as they are read, with the blocks and entries of the first reading where they are the same."""
         before, set_ = self.first.data, {path[0] for path in (*self.set, *self.first.set)}
-        if set_ <= {"parameters"}:  # which stand in the data as they are written
+        self.by_parameters = set_ <= {"parameters"}
+        if self.by_parameters:  # which stand in the data as they are written
             return {**before, **{block: value for block, value in given.items() if block in set_}}
         return _shared_data(super().completed(given), before)
 
-    def spec(self) -> Spec:
-        """The scene, with the values of the first one where they are the same. Raises SpecError."""
-        made, before = super().spec(), self.first.resolved
-        return Spec(**{name: _shared_field(getattr(made, name), getattr(before, name)) for name in Spec._fields})
+    def meant(self, document: f.Document, meaning: Meaning) -> Spec:
+        """The scene that the document means, with the values of the first one where they are the same."""
+        before = self.first.resolved
+        made = resolve(document, meaning, LaterResolver(self, document, meaning))
+        others = {name: shared(getattr(made, name), getattr(before, name)) for name in WHOLE}
+        tables = shared_entries(made.tables, before.tables)
+        return made._replace(tables=tables, parameters=shared_entries(made.parameters, before.parameters), **others)
+
+    def names(self) -> Names:
+        """What is named in the spec: where parameters alone are others that of the first reading, but for these."""
+        if not self.by_parameters:
+            return super().names()
+        known = self.first.named
+        entries = {**known.entries, "parameters": mapping(self.data.get("parameters"))}
+        return Names(entries, known.points, known.joints, {})
 
     def evaluated(self) -> Parameters:
         """The parameters."""
@@ -231,10 +344,9 @@ class LaterReading(Loading):
 
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """What of the document breaks a rule."""
-        differing = frozenset(self._differing(draft))
-        for rule, kept in zip(self.rules, self.first.verdicts, strict=True):
-            stands = kept.lookups is not None and kept.lookups.isdisjoint(differing)
-            found = kept.violations if stands else rule.check(draft)
+        self.differing = frozenset(self._differing(draft))
+        for rule, kept in self.first.standing(self.differing):
+            found = rule.check(draft) if kept is None else kept
             yield from ((rule, violation) for violation in found)
 
     def _differing(self, draft: DraftDocument) -> Iterator[Lookup]:
@@ -246,19 +358,44 @@ class LaterReading(Loading):
             yield from changed(f"names.{name}", shared_entries(new, old), old)
         for block, entries in draft.names.entries.items():
             yield from changed(f"names.entries.{block}", entries, before.names.entries[block])
-        for name in f.Document._fields:
-            new, old = getattr(draft.document, name), getattr(before.document, name)
-            left_out = name in f.SINGLE and not mapping(self.data.get(name)) and not mapping(self.first.data.get(name))
-            if not left_out and not _is_as_before(new, old):
-                yield Lookup("document", name)
+        yield from changed_in_document("document", draft.document, before.document)
 
     def locations(self) -> dict[str, SourceLocation]:
         """Locations for later stages: of the first reading, but for those on the command line of either."""
-        set_ = {*self.set, *self.first.set}
-        moved = [path for path in self.first.placed if any(path[: len(each)] == each for each in set_)]
+        set_ = frozenset({*self.set, *self.first.set})
+        moved = self.locations_of((*self.first.places_in(set_), *self.set))
         gone = {dotted(path) for path in self.first.set}
-        kept = {words: location for words, location in self.first.located.items() if words not in gone}
-        return kept | self.locations_of((*moved, *self.set))
+        self.moved = moved.keys() | gone
+        return {words: place for words, place in self.first.located.items() if words not in gone} | moved
+
+
+class LaterResolver(Resolver):
+    """Follows references where something that a part of the scene hangs on has changed."""
+
+    def __init__(self, later: LaterReading, document: f.Document, meaning: Meaning) -> None:
+        super().__init__(document, meaning.locations, meaning.curves)
+        first = later.first
+        self.kept, self.before = first.meanings, first.resolved
+        curves = changed("curves", meaning.curves, first.curved)
+        self.differing = later.differing.union((Lookup("locations", words) for words in later.moved), curves)
+
+    def entries(self, block: str, by: str) -> dict[Any, Any]:
+        """What the entries of a block mean; of a block in which all stand the first one."""
+        made, entries = getattr(self, by), getattr(self.document, block)
+        found = {name: self._of((block, name), partial(made, name, entry)) for name, entry in entries.items()}
+        before = getattr(self.before, block)
+        unchanged = type(before) is dict and _is_as_before(found, before)
+        return before if unchanged else found
+
+    def single(self, by: str) -> Any:
+        """What the document as a whole means."""
+        return self._of((by, None), getattr(self, by))
+
+    def _of(self, key: tuple[str, Any], made: Callable[[], Any]) -> Any:
+        kept = self.kept.get(key)
+        if kept is None:
+            return made()
+        return kept.value if kept.lookups.isdisjoint(self.differing) else shared(made(), kept.value)
 
 
 class LaterReader(Reader):
@@ -306,11 +443,6 @@ def _is_as_before(new: Any, old: Any) -> bool:
     if isinstance(new, list) and isinstance(old, list):
         return len(new) == len(old) and all(a is b for a, b in zip(new, old, strict=True))
     return new is old
-
-
-def _shared_field(new: Any, old: Any) -> Any:
-    """A field of a scene with the values of an older one where they are the same."""
-    return shared_entries(new, old) if isinstance(new, dict) and isinstance(old, dict) else shared(new, old)
 
 
 def _shared_data(new: dict[str, Any], old: dict[str, Any]) -> dict[str, Any]:

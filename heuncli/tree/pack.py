@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.expressions.programs import Expression, Pack
+from heuncli.expressions.programs import Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.model import (
@@ -16,18 +16,16 @@ from heuncli.mechanism.model import (
     Joint,
     JointLoad,
     Mechanism,
-    NamedPoint,
-    PairLoad,
-    PointLoad,
     Stop,
 )
-from heuncli.records import replace
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows, perpendicular, to_quaternion
+from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
+from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
 from heuncli.tree.layout import Contact, Freedom, Layout
+from heuncli.tree.load_rows import named_in, programs_of, with_loads
 from heuncli.tree.rows import (
     NO_PROGRAM,
     ZERO,
@@ -37,25 +35,15 @@ from heuncli.tree.rows import (
     CounterRow,
     FreedomRow,
     GroupRow,
-    LoadRow,
     Program,
-    VariableRow,
     Vector,
-    WatchRow,
     table_of,
 )
 from heuncli.tree.spanning import Hang, Spanning, span
 from heuncli.tree.starts import GivenTree, JointStart, Z, distance, joint_frame, joint_start, pose, to_direction
 from heuncli.tree.tables import limits, symmetric
 
-JOINT_LOADS = {  # of the turning, of the sliding
-    "torque": (kernel.TORQUE, kernel.THRUST),
-    "turn_spring": (kernel.TURN_SPRING, kernel.THRUST),
-    "damper": (kernel.TURN_DAMPER, kernel.SHIFT_DAMPER),
-    "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
-}
 UNTURNED = np.eye(3)
-PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
 Scalar = tuple[int, Array, str, float, float]  # of a freedom: kind, direction, quantity, coordinate, rate
 
 
@@ -72,26 +60,9 @@ def lay_out(
     inertias (n, 3, 3): about the centres of mass, body axes, with what was lent for the motion; size: of the scene [m];
     work: whether that of drives and of loads without potential joins the state; tree: of a larger scene, to be kept.
     """
-    pack = Pack()
-    programs, uses = _programs(mechanism, pack)
-    names = {j.name: k for k, j in enumerate(mechanism.joints)}
-    kept = {names[joint] for joint, _ in uses if joint in names} | {
-        s.joint for s in mechanism.stops if s.quantity != "length"
-    }
-    kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
-    # of a universal that is cut nothing tells the angle
-    kept |= {k for k in sprung(mechanism) if len(JOINTS[mechanism.joints[k].kind].turns) == 2}
-    spanning = span(mechanism, kept) if tree is None else tree.spanning
-    if tree is not None and tree.starts is not None:
-        starts = list(tree.starts)
-    else:
-        starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
-    return _Builder(mechanism, start, spanning, starts, inertias, size, pack, programs).layout(work)
-
-
-def sprung(mechanism: Mechanism) -> set[int]:
-    """The joints with springs about their axes."""
-    return {load.joint for load in mechanism.loads if isinstance(load, JointLoad) and load.kind == "turn_spring"}
+    programs, named = programs_of(mechanism), named_in(mechanism)
+    frame = framed(mechanism, start, inertias, size, work, named, programs.drives, tree)
+    return with_loads(frame, mechanism, programs)
 
 
 def lay_out_like(
@@ -101,26 +72,48 @@ def lay_out_like(
 
     Programs that it has of its own come after those of the other, so that the branches of both are the same.
     """
-    pack = Pack()
-    programs, _ = _programs(layout.mechanism, pack)
-    for e in mechanism.expressions():
-        if e.constant is None and id(e) not in programs:
-            programs[id(e)] = pack.add(e)
-    builder = _Builder(mechanism, start, layout.spanning, list(starts), inertias, layout.size, pack, programs)
-    return builder.layout(layout.work_at >= 0)
+    programs = programs_of(layout.mechanism).more(mechanism)
+    tree = GivenTree(layout.spanning, tuple(starts))
+    work = layout.work_at >= 0
+    frame = framed(mechanism, start, inertias, layout.size, work, frozenset(), programs.drives, tree)
+    return with_loads(frame, mechanism, programs)
 
 
-def _programs(mechanism: Mechanism, pack: Pack) -> tuple[dict[int, Program], set[tuple[str, str]]]:
-    """Put every expression in time into the pack; where each stands, by identity, and the coordinates they name."""
-    expressions = [value for load in mechanism.loads for value in load.values]
-    expressions += [condition.value for condition in mechanism.conditions]
-    driven = [j.drive.value for j in mechanism.joints if j.drive is not None]
-    programs = {id(e): pack.add(e) for e in expressions if e.constant is None} | {id(e): pack.add(e) for e in driven}
-    return programs, {use for e in expressions for use in e.uses}
+def framed(
+    mechanism: Mechanism,
+    start: Assembly,
+    inertias: Array,
+    size: float,
+    work: bool,
+    named: frozenset[str],
+    drives: tuple[Program, ...],
+    tree: GivenTree | None,
+) -> LayoutFrame:
+    """A layout without its loads; named: joints and points that expressions name; drives: a program a joint."""
+    spanning = span(mechanism, to_be_kept(mechanism, named)) if tree is None else tree.spanning
+    if tree is not None and tree.starts is not None:
+        starts = list(tree.starts)
+    else:
+        starts = [joint_start(mechanism, start, joint) for joint in mechanism.joints]
+    return _Builder(mechanism, start, spanning, starts, inertias, size, drives).frame(work)
+
+
+def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
+    """The joints that are not to be cut."""
+    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named}
+    kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
+    kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
+    # of a universal that is cut nothing tells the angle
+    return kept | {k for k in sprung(mechanism) if len(JOINTS[mechanism.joints[k].kind].turns) == 2}
+
+
+def sprung(mechanism: Mechanism) -> set[int]:
+    """The joints with springs about their axes."""
+    return {load.joint for load in mechanism.loads if isinstance(load, JointLoad) and load.kind == "turn_spring"}
 
 
 class _Builder:
-    """Fills the kernel's arrays; lives for one call of lay_out."""
+    """Fills the kernel's arrays; lives for one call of framed."""
 
     def __init__(
         self,
@@ -130,11 +123,10 @@ class _Builder:
         starts: list[JointStart],
         inertias: Array,
         size: float,
-        pack: Pack,
-        programs: dict[int, Program],
+        drives: tuple[Program, ...],
     ) -> None:
         self.mechanism, self.start, self.spanning, self.starts = mechanism, start, spanning, starts
-        self.inertias, self.pack, self.programs = inertias, pack, programs
+        self.inertias, self.drives = inertias, drives
         self.place = {h.body: i for i, h in enumerate(spanning.hangs)}
         self.size = size
         self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
@@ -146,11 +138,10 @@ class _Builder:
         self.groups: list[GroupRow] = []
         self.answer_count = 0
 
-    def layout(self, work: bool) -> Layout:
+    def frame(self, work: bool) -> LayoutFrame:
         """All of it."""
         self.bodies()
         self.rows()
-        self.loads()
         return self.finish(work)
 
     def _reference(self, h: Hang) -> Array:
@@ -224,7 +215,7 @@ class _Builder:
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
-        return self.programs[id(drive.value)] if drive is not None and drive.quantity == quantity else None
+        return self.drives[h.joint] if drive is not None and drive.quantity == quantity else None
 
     def _hang(self, h: Hang) -> tuple[Array, Array, bool, list[Scalar]]:
         """Joint point in the parent, R_ref, ball, and freedoms (kind, direction, quantity, coordinate, rate)."""
@@ -304,7 +295,7 @@ class _Builder:
             joint, s = self.mechanism.joints[k], self.starts[k]
             kind = JOINTS[joint.kind]
             if kind.keeps_distance and k not in loose:
-                program = self.programs[id(joint.drive.value)] if joint.drive is not None else NO_PROGRAM
+                program = self.drives[k]
                 length = joint.length if joint.length is not None else distance(self.start, joint)
                 length = 0.0 if program[1] else length  # a drive tells it in time
                 if joint.tension_only:
@@ -371,97 +362,7 @@ class _Builder:
             i = self.body_rows[i].parent
         return path
 
-    def loads(self) -> None:
-        """Applied loads."""
-        self.load_rows: list[LoadRow] = []
-        for load in self.mechanism.loads:
-            if isinstance(load, PointLoad):
-                self._point_load(load)
-            elif isinstance(load, PairLoad):
-                self._pair_load(load)
-            else:
-                self._joint_load(load)
-
-    def _values(self, values: Sequence[Expression]) -> tuple[Program, Program, Program, list[float]]:
-        """The programs of up to three components that vary, and the numbers of those that do not."""
-        constants = [value.constant for value in values] + [0.0] * (3 - len(values))
-        programs = [self.programs[id(value)] if value.constant is None else NO_PROGRAM for value in values]
-        x, y, z = programs + [NO_PROGRAM] * (3 - len(values))
-        return x, y, z, [constant if constant is not None else 0.0 for constant in constants]
-
-    def _point_load(self, load: PointLoad) -> None:
-        q = np.zeros(3) if load.point is None else self.relative(load.body, load.point)
-        kind = kernel.FORCE if load.kind == "force" else kernel.COUPLE
-        body, in_body, values = self.in_tree(load.body), int(load.in_body), self._values(load.vector)
-        self.load_rows.append(LoadRow(kind, GROUND, body, *values, in_body=in_body, q=q, factor=load.factor))
-
-    def _pair_load(self, load: PairLoad) -> None:
-        self.load_rows.append(
-            LoadRow(
-                kernel.SPRING if load.value is None else kernel.ACTUATOR,
-                self.in_tree(load.a),
-                self.in_tree(load.b),
-                *self._values(load.values),
-                p=self.relative(load.a, load.p),
-                q=self.relative(load.b, load.q),
-                stiffness=load.stiffness,
-                length=load.length,
-                coefficient=load.damping,
-            )
-        )
-
-    def _joint_load(self, load: JointLoad) -> None:
-        joint = self.mechanism.joints[load.joint]
-        kind = JOINTS[joint.kind]
-        turns, slides = JOINT_LOADS[load.kind]
-        parts = {"turning": (turns, load.turning), "sliding": (slides, load.sliding)}
-        for motion in kind.moved_by(load.kind):
-            number, coefficient = parts[motion]
-            row = LoadRow(
-                number,
-                self.in_tree(joint.a),
-                self.in_tree(joint.b),
-                *self._values(load.values),
-                in_body=int(kind.has_one_axis),
-                p=self.relative(joint.a, joint.p),
-                q=self.relative(joint.b, joint.q),
-                coefficient=coefficient,
-                axis=joint.axis,
-                speed=load.speed,
-            )
-            if load.kind == "turn_spring":
-                row = self._turn_spring(load, row)
-            elif load.presses is not None:
-                row = self._pressed(load, row)
-            self.load_rows.append(row)
-
-    def _pressed(self, load: JointLoad, row: LoadRow) -> LoadRow:
-        """Where what presses is found: in the balance of the branch on the joint, or in the rows of a cut one."""
-        held = next((i for i, h in enumerate(self.spanning.hangs) if h.joint == load.joint), GROUND)
-        own = [r for r, joint in enumerate(self.row_joint) if joint == load.joint]
-        own = own[: JOINTS[self.mechanism.joints[load.joint].kind].rows]  # those of its stops come after
-        presses, first = PRESSES[load.presses or "whole"], own[0] if own else 0
-        return replace(row, presses=presses, held_by=held, row=first, row_count=len(own), reach=load.reach)
-
-    def _turn_spring(self, load: JointLoad, row: LoadRow) -> LoadRow:
-        """What a spring about a joint's axis has of its own: where its angle stands, or tells it where that was cut."""
-        joint, start = self.mechanism.joints[load.joint], self.starts[load.joint]
-        named = enumerate(self.freedoms)
-        freedom = next((i for i, f in named if f.joint == load.joint and f.quantity in ("angle", "first")), -1)
-        across = perpendicular(joint.axis)[0]
-        return replace(
-            row,
-            stiffness=load.stiffness,
-            length=load.angle,
-            freedom=freedom,
-            counter=list(self.counters).index(load.joint) if load.joint in self.counters else -1,
-            # a universal's coordinate is counted from the start; without any the angle stays what it is there
-            offset=0.0 if freedom >= 0 and self.freedoms[freedom].quantity == "angle" else start.angle,
-            across=across,
-            mark=start.R_ref.T @ across,
-        )
-
-    def finish(self, work: bool) -> Layout:
+    def finish(self, work: bool) -> LayoutFrame:
         """Counted angles and the work join the state; the tables are made."""
         driven = any(j.drive is not None for j in self.mechanism.joints)
         energy_group = -1
@@ -481,11 +382,8 @@ class _Builder:
         tables = {
             "bodies": table_of(kernel.Body, self.body_rows),
             "freedoms": table_of(kernel.Freedom, self.freedom_rows),
-            "loads": table_of(kernel.Load, self.load_rows),
             "closures": table_of(kernel.Closure, self.closure_rows, places),
             "counters": table_of(kernel.Counter, self._counter_rows()),
-            "variables": table_of(kernel.Variable, self._variable_rows()),
-            "watches": table_of(kernel.Watch, self._watch_rows()),
             "contacts": table_of(kernel.Contact, self.one_sided),
             "groups": table_of(kernel.Group, self.groups),
             "lents": table_of(kernel.Lent, []),
@@ -508,12 +406,12 @@ class _Builder:
             indices=indices,
             answer_count=self.answer_count,
             column_count=column_count,
-            pack=self.pack,
+            pack=Pack(),
             work_at=work_at,
             contacts=tuple(self.contacts),
             flat=self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
-        return with_islands(layout)
+        return frame_of(with_islands(layout))
 
     def _counter_rows(self) -> list[CounterRow]:
         joints = self.mechanism.joints
@@ -521,43 +419,3 @@ class _Builder:
             CounterRow(self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis)
             for k, at in self.counters.items()
         ]
-
-    def _point_row(self, point: NamedPoint, quantity: str) -> VariableRow:
-        """The variable that is a point's place or velocity along one of its axes."""
-        axis = "xyz".index(quantity[-1])
-        return VariableRow(
-            is_rate=int(quantity.startswith("v")),
-            is_point=1,
-            body=self.in_tree(point.body),
-            q=self.relative(point.body, point.place),
-            direction=point.axes[axis],
-            offset=float(point.offset[axis]),
-        )
-
-    def _watch_rows(self) -> list[WatchRow]:
-        """The programs of loads and drives: what they do between the stages of a step must not be passed over.
-
-        Of conditions only where they change.
-        """
-        driven = {id(j.drive.value): j.drive.value for j in self.mechanism.joints if j.drive is not None}
-        loads = {id(e): e for load in self.mechanism.loads for e in load.values}
-        watched = [
-            WatchRow(self.programs[key], curved=int(key in driven), condition=0)
-            for key, e in (loads | driven).items()
-            if e.constant is None
-        ]
-        conditions = (self.programs[id(condition.value)] for condition in self.mechanism.conditions)
-        return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
-
-    def _variable_rows(self) -> list[VariableRow]:
-        """The first is the time, which is no coordinate."""
-        joints = self.mechanism.joints
-        by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(self.freedoms) if f.joint >= 0}
-        rows = [VariableRow()]
-        for name, quantity in (use for use in self.pack.variables if not isinstance(use, str)):
-            if name in self.mechanism.points:
-                rows.append(self._point_row(self.mechanism.points[name], quantity))
-                continue
-            base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
-            rows.append(VariableRow(by_name[name, base], int(base != quantity)))
-        return rows

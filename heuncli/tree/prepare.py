@@ -15,9 +15,12 @@ from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 from heuncli.stages import ANEW, Stages
+from heuncli.tree.frame import LayoutFrame
 from heuncli.tree.idle_spins import IdleSpin, idle_spins, without_inertia
 from heuncli.tree.layout import Layout
-from heuncli.tree.pack import lay_out
+from heuncli.tree.load_rows import named_in, programs_of, with_loads
+from heuncli.tree.pack import framed
+from heuncli.tree.rows import Program
 from heuncli.tree.spanning import Spanning
 from heuncli.tree.starts import GivenTree, JointStart
 
@@ -46,7 +49,7 @@ def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Pre
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
-    scene = arranged(mechanism, start)
+    scene = arranged(mechanism, start, stages=stages)
     if mechanism.stops:
         from heuncli.tree.limits import at_rest_on_stops, start_within_limits  # where something strikes
 
@@ -65,11 +68,38 @@ def arranged(
     spanning: Spanning | None = None,
     size: float | None = None,
     starts: tuple[JointStart, ...] | None = None,
+    stages: Stages = ANEW,
 ) -> PreparedScene:
     """Lay out an assembled mechanism; bodies with an undetermined spin get some inertia and no spin about its axis.
 
-    spanning, size, starts: of the tree, the scene [m] and its joints, where they are those of another scene.
+    spanning, size, starts: of the tree, the scene [m] and its joints, where they are those of another scene; stages:
+    all but the loads is one.
     """
+    programs, named = programs_of(mechanism), named_in(mechanism)
+    tree = None if spanning is None else GivenTree(spanning, starts)
+    found = stages.run(arrangement, mechanism, start, named, programs.drives, size, tree)
+    start = replace(start, angular_velocity=found.omega)
+    return PreparedScene(mechanism, start, found.idle, with_loads(found.frame, mechanism, programs, stages))
+
+
+@record
+class Arrangement:
+    """What of a laid-out scene hangs on no value of a load; omega (n, 3): angular velocities at the start."""
+
+    idle: tuple[IdleSpin, ...]
+    omega: Array
+    frame: LayoutFrame
+
+
+def arrangement(
+    mechanism: Mechanism,
+    start: Assembly,
+    named: frozenset[str],
+    drives: tuple[Program, ...],
+    size: float | None,
+    tree: GivenTree | None,
+) -> Arrangement:
+    """Undetermined spins, and the frame; named, drives: as of `framed`."""
     size = size_of_scene(mechanism, start) if size is None else size
     idle = tuple(idle_spins(mechanism, size))
     inertias = np.array([b.inertia for b in mechanism.bodies])
@@ -83,26 +113,30 @@ def arranged(
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
-    tree = None if spanning is None else GivenTree(spanning, starts)
-    return PreparedScene(mechanism, start, idle, lay_out(mechanism, start, inertias, size, works, tree))
+    return Arrangement(idle, omega, framed(mechanism, start, inertias, size, works, named, drives, tree))
 
 
-def lacking_inertia(scene: PreparedScene) -> dict[int, Array]:
+def lacking_inertia(scene: PreparedScene, stages: Stages = ANEW) -> dict[int, Array]:
     """The axes about which a body has no inertia and was lent none, body axes (k, 3), by its place in the tree.
 
     In a planar scene those of bodies that have none about z.
     """
-    mechanism = scene.mechanism
-    order = [h.body for h in scene.layout.spanning.hangs]
+    layout = scene.layout
+    return stages.run(lacking, scene.mechanism, scene.idle, layout.spanning, layout.size)
+
+
+def lacking(mechanism: Mechanism, idle: tuple[IdleSpin, ...], spanning: Spanning, size: float) -> dict[int, Array]:
+    """The same, of the scene's tree and size."""
+    order = [h.body for h in spanning.hangs]
     inertia = np.array([body.inertia for body in mechanism.bodies]).reshape(-1, 3, 3)
-    for spin in scene.idle:
+    for spin in idle:
         inertia[spin.body] += spin.lent
     inertia = inertia[order]
     # most have all of it, which their determinants tell sooner than their moments
     volume = np.einsum("ni,ni->n", inertia[:, 0], cross_rows(inertia[:, 1], inertia[:, 2]))
     found = {}
     for i in np.flatnonzero(volume <= tolerances.SLENDER * np.trace(inertia, axis1=1, axis2=2) ** 3).tolist():
-        axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), scene.layout.size)
+        axes, _ = without_inertia(replace(mechanism.bodies[order[i]], inertia=inertia[i]), size)
         if len(axes) and not (mechanism.planar and np.sum(axes[:, 2] ** 2) < tolerances.ALONG_SQUARED):
             found[i] = axes
     return found

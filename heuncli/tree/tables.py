@@ -89,10 +89,12 @@ def parts(flat: Array, sizes: Iterable[tuple[np.dtype[np.void], int]]) -> list[T
 
 
 def limits(values: Mapping[str, float]) -> Table:
-    """The kernel's thresholds as its table of one row."""
-    return _limits(tuple(values.items())).copy()
+    """The kernel's thresholds as its table of one row, which all scenes share: it cannot be written to."""
+    return _limits(tuple(values.items()))
 
 
 @cache
 def _limits(values: tuple[tuple[str, float], ...]) -> Table:
-    return table(scene.Limits, [dict(values)])
+    made = table(scene.Limits, [dict(values)])
+    made.flags.writeable = False
+    return made

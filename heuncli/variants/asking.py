@@ -3,24 +3,30 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Literal
 
-from heuncli.errors import HeunError
+from heuncli.errors import HeunError, SpecError
 from heuncli.named_tuples import NamedTuple
+from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
-from heuncli.study.ask.measure import MeasureRequest, lost_from, value
+from heuncli.spec.named_files import KeptFile, KeptFiles
+from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, lost_from, value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.variants.prepared import Variants
 from heuncli.variants.stated import error_of
 
+COUNTED = (BLOWS, EVENTS)  # of which one run has more than another
 CASE = "case"  # the name by which an axis varies the load case
-Word = Literal["", "open", "unknown", "beyond"]
+OF_WORDS = ("set-in-si",)  # warnings of how values are written, not of the scene: told once of an axis, not of variants
+Word = Literal["", "open", "unknown", "beyond", "absent"]
 
 
 class Measured(NamedTuple):
     """A measure of one variant in SI; None: not known, and the word says why. error: as the run states it, absolute.
+
+    absent: what is measured does not happen in this run, as an event or a blow.
 
     at: its instant [s], None where it has none; error None: the run states none.
     """
@@ -47,7 +53,7 @@ class Recipe(NamedTuple):
     """All that is needed to answer variants of a spec, in this process or another.
 
     text: the spec as it was read; overrides: set in all variants, in the form of `--set`; case: the load case on top of
-    which they go.
+    which they go; files: those that the spec names, as they were read, None where they stand beside it (files.py).
     """
 
     path: str
@@ -56,6 +62,7 @@ class Recipe(NamedTuple):
     options: Options
     overrides: Mapping[str, str]
     case: str | None = None
+    files: Mapping[str, KeptFile] | None = None
 
 
 class Asker:
@@ -64,6 +71,7 @@ class Asker:
     def __init__(self, recipe: Recipe) -> None:
         """Read the spec and set it up once. Raises SpecError."""
         self.recipe = recipe
+        self._files = None if recipe.files is None else KeptFiles(recipe.path, recipe.files)
         self._prepared: dict[str | None, Variants] = {}
         self.spec = self.variants(recipe.case).spec
 
@@ -74,7 +82,7 @@ class Asker:
             recipe = self.recipe
             found = Variants(
                 recipe.path, recipe.text, options=recipe.options, overrides=recipe.overrides, case=case,
-                measures=[asked.path for asked in recipe.measures],
+                measures=[asked.path for asked in recipe.measures], files=self._files,
             )  # fmt: skip
             self._prepared[case] = found
         return found
@@ -92,15 +100,26 @@ class Asker:
         variants, given = self._with_case(values)
         return variants.load(given)
 
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names on which nothing hangs, in none of the load cases solved so far."""
+        return frozenset.intersection(*(variants.idle(names) for variants in self._prepared.values()))
+
     def answer(self, values: Mapping[str, str]) -> Answer:
         """The measures of a variant, or why there are none."""
         try:
-            study = self.study(values)
-            measures = tuple(measured(asked, study) for asked in self.recipe.measures)
+            return self.measured(values)
         except HeunError as error:
-            problem = error.problems[0]
-            return Answer(code=problem.code, reason=problem.message)
-        return Answer(measures, warnings=tuple(dict.fromkeys((*study.results.warnings, *study.later_warnings))))
+            return failed(error)
+
+    def measured(self, values: Mapping[str, str]) -> Answer:
+        """The measures of a variant.
+
+        Raises what `study` does; of a measure that is no number of this scene NotOneNumber, SpecError [unknown-path].
+        """
+        study = self.study(values)
+        measures = tuple(measured(asked, study) for asked in self.recipe.measures)
+        read = (problem.message for problem in study.spec.warnings if problem.code not in OF_WORDS)
+        return Answer(measures, warnings=tuple(dict.fromkeys((*read, *study.results.warnings, *study.later_warnings))))
 
     def _with_case(self, values: Mapping[str, str]) -> tuple[Variants, Mapping[str, str]]:
         case = values.get(CASE) if varies_cases(self.spec) else None
@@ -109,14 +128,27 @@ class Asker:
         return self.variants(case), {name: text for name, text in values.items() if name != CASE}
 
 
+def failed(error: HeunError) -> Answer:
+    """The answer of a variant that could not be solved."""
+    problem = error.problems[0]
+    return Answer(code=problem.code, reason=problem.message)
+
+
 def varies_cases(spec: Spec) -> bool:
     """Whether `case` is the load case: a spec may have a parameter of that name."""
     return bool(spec.cases) and CASE not in spec.parameters
 
 
 def measured(asked: MeasureRequest, study: Study) -> Measured:
-    """A measure of a solved variant. Raises NotOneNumber."""
-    peak, horizon = value(asked, study), lost_from(asked, study)
+    """A measure of a solved variant. Raises NotOneNumber, SpecError [unknown-path]."""
+    try:
+        peak, horizon = value(asked, study), lost_from(asked, study)
+    except NotInThisRun:
+        return Measured(None, word="absent")
+    except SpecError:
+        if asked.path.split(".")[0] not in COUNTED:
+            raise
+        return Measured(None, word="absent")
     if horizon is not None:
         return Measured(None, word="beyond")
     if math.isnan(peak.value):

@@ -16,30 +16,36 @@ MOST_VARIANTS = 10_000_000
 
 
 class Draws(NamedTuple):
-    """Random parameters together: their laws, and the points drawn in the unit cube, (samples, parameters).
+    """Random parameters together: their laws, and what is drawn of them in their units, (variants, parameters).
 
-    seed: of the generator, by which the same are drawn again.
+    seed: by which the same are drawn again; each: so many variants in a row are of one sample (draws.py).
     """
 
     laws: tuple[Drawn, ...]
     values: Array
     seed: int
+    each: int = 1
 
 
 class Plan(NamedTuple):
     """Variants by their numbers, from 0 on: every combination of the axes, or of all the values of one place together.
 
-    The first axis changes slowest; draws, where there are any, come behind all axes and change fastest.
+    The first axis changes slowest; draws, where there are any, come behind all axes and change fastest. columns: of a
+    table of which every row is combined with all that the axes make; these change slowest of all.
     """
 
     axes: tuple[ParameterAxis, ...]
     together: bool = False
     draws: Draws | None = None
+    columns: tuple[ParameterAxis, ...] = ()
 
     @property
     def names(self) -> tuple[str, ...]:
         """What is varied, in the order in which it was named."""
-        return (*(axis.name for axis in self.axes), *(law.name for law in (self.draws.laws if self.draws else ())))
+        return (
+            *(axis.name for axis in (*self.columns, *self.axes)),
+            *(law.name for law in (self.draws.laws if self.draws else ())),
+        )
 
     @property
     def size(self) -> int:
@@ -48,9 +54,10 @@ class Plan(NamedTuple):
 
     @property
     def _combinations(self) -> int:
+        rows = len(self.columns[0].texts) if self.columns else 1
         if self.together:
-            return len(self.axes[0].texts) if self.axes else 1
-        return math.prod(len(axis.texts) for axis in self.axes)
+            return rows * (len(self.axes[0].texts) if self.axes else 1)
+        return rows * math.prod(len(axis.texts) for axis in self.axes)
 
     def values(self, number: int) -> dict[str, str]:
         """The values of a variant, in the form of `--set`."""
@@ -59,13 +66,15 @@ class Plan(NamedTuple):
             number, row = divmod(number, len(self.draws.values))
             drawn = zip(self.draws.laws, self.draws.values[row].tolist(), strict=True)
             found = {law.name: text_of(value, law.unit) for law, value in drawn}
-        if self.together:
-            return {axis.name: axis.texts[number] for axis in self.axes} | found
         own: dict[str, str] = {}
-        for axis in reversed(self.axes):
+        if self.together and self.axes:
+            number, place = divmod(number, len(self.axes[0].texts))
+            own = {axis.name: axis.texts[place] for axis in self.axes}
+        for axis in reversed(self.axes) if not self.together else ():
             number, place = divmod(number, len(axis.texts))
             own[axis.name] = axis.texts[place]
-        return {axis.name: own[axis.name] for axis in self.axes} | found
+        of_row = {axis.name: axis.texts[number] for axis in self.columns}
+        return of_row | {axis.name: own[axis.name] for axis in self.axes} | found
 
     def numbers(self, shard: tuple[int, int] = (1, 1)) -> Iterator[int]:
         """The numbers of the variants, of a shard k of n: every n-th one, from the k-th on."""
@@ -73,9 +82,17 @@ class Plan(NamedTuple):
         return iter(range(k - 1, self.size, n))
 
 
-def plan_of(axes: Sequence[ParameterAxis], *, together: bool = False, draws: Draws | None = None) -> Plan:
-    """The plan of some axes. Raises AxisError."""
-    names = [axis.name for axis in axes] + [law.name for law in (draws.laws if draws else ())]
+def plan_of(
+    axes: Sequence[ParameterAxis],
+    *,
+    together: bool = False,
+    draws: Draws | None = None,
+    columns: Sequence[ParameterAxis] = (),
+) -> Plan:
+    """The plan of some axes, and of the columns of a table, which are of one length. Raises AxisError."""
+    if together or not axes:
+        axes, columns, together = [*columns, *axes], (), together or bool(columns)
+    names = [axis.name for axis in (*columns, *axes)] + [law.name for law in (draws.laws if draws else ())]
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "one axis a parameter")
@@ -84,7 +101,7 @@ def plan_of(axes: Sequence[ParameterAxis], *, together: bool = False, draws: Dra
         raise AxisError(
             "--zip", f"the axes have not the same count of values: {counts}", "leave --zip out for all combinations"
         )
-    plan = Plan(tuple(axes), together, draws)
+    plan = Plan(tuple(axes), together, draws, tuple(columns))
     if plan.size > MOST_VARIANTS:
         raise AxisError(" ".join(names), f"{plan.size:,} variants; at most {MOST_VARIANTS:,}", HINT)
     return plan

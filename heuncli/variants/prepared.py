@@ -9,7 +9,7 @@ looked up (spec/variants.py), so a variant is what `heun run --set` makes of it,
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 
@@ -17,6 +17,7 @@ from heuncli.errors import HeunError
 from heuncli.kept_stages import FirstStages, LaterStages
 from heuncli.records import replace
 from heuncli.spec.models import Spec
+from heuncli.spec.named_files import NamedFiles
 from heuncli.spec.variants import SpecVariants
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options, as_asked
@@ -36,15 +37,16 @@ class Variants:
         overrides: Mapping[str, str] | None = None,
         case: str | None = None,
         measures: Sequence[str] = (),
+        files: NamedFiles | None = None,
     ) -> None:
         """Read the file of a spec, or a text that stands for it, as `load` does; nothing of it is read again.
 
         options: by which all variants are solved; overrides: what is set in all of them; case: the load case whose
-        values these go on top of; measures: paths into the results, where no more is solved than these need. Raises
-        SpecError.
+        values these go on top of; measures: paths into the results, where no more is solved than these need; files:
+        those that the spec names, None where they stand beside it. Raises SpecError.
         """
         self.options = options or Options()
-        self._specs = SpecVariants(path, text, overrides, checking=False, case=case)
+        self._specs = SpecVariants(path, text, overrides, checking=False, case=case, files=files)
         if measures:
             what = asked_by(measures, self.spec)
             self.options = replace(self.options, wanted=what.reports, entries=what.entries)
@@ -57,6 +59,10 @@ class Variants:
     def spec(self) -> Spec:
         """The scene as it was read, with what is set in all variants."""
         return self._specs.spec
+
+    def idle(self, names: Collection[str]) -> frozenset[str]:
+        """The parameters among some names on which nothing of the scene hangs."""
+        return self._specs.idle(names)
 
     def load(self, values: Mapping[str, str]) -> Spec:
         """The scene with other values, by the names and in the form of `--set`. Raises SpecError."""

@@ -3,47 +3,56 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from heuncli.records import replace
-from heuncli.report.digits import certainty
+from heuncli.report.digits import certainty, lost_by_rounding
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
 from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
+from heuncli.run_places import words_of
 from heuncli.spec.models import Spec
-from heuncli.study.ask.measure import MeasureRequest, Peak, stated_error
+from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
+from heuncli.study.model.selection import entries_of, entry_at
 
 SI = Units({})
 
 
 def unit_of(path: str, spec: Spec) -> str:
     """The SI unit of what a path leads to; empty where it has none, or that is not known before the run."""
-    keys = [word for word in path.split(".") if word]
+    words = words_of(path)
+    entry, rest = entry_at(words, entries_of(spec))
+    keys = [*entry, *rest] if entry is not None else words
+    while keys and quantity(keys) is None:  # what stands behind the quantity names one of its numbers: .x, .0.x
+        keys.pop()
+    return _unit(keys, spec)
+
+
+def _unit(keys: Sequence[str], spec: Spec) -> str:
+    """The SI unit of the quantity under some keys; of two that of what turns, or slides."""
     row = quantity(keys)
     if row is None or not row.units:
         return ""
-    of_blow = keys[0] == BLOWS
-    own = keys[2:] if of_blow else keys
+    own = keys[2:] if keys[0] == BLOWS else keys
     turns = len(row.units) > 1 and labels_of(spec).turns(own[0], own[1])
     return row.units[1 if turns else 0]
 
 
 def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
-    """The error of a measure; None where the run states none, as of what is counted."""
+    """The error of a measure, as tables and goldens state it; None where the run states none, as of what is counted."""
     keys = find(study.results, asked.path).keys
     if keys[0] == EVENTS:
         return _of_event(keys, peak, study)
-    row = quantity(keys)
-    if row is None or not row.units:
+    unit = _unit(keys, study.spec)
+    if not unit:
         return None
-    kind, known = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes.errors
-    if any((kind, unit) in known for unit in row.units):
-        error = stated_error(study, keys)
-        return None if math.isnan(error) else float(error)
-    certain = certainty(study.results, replace(labels_of(study.spec), units=SI), study.magnitudes)
-    error = min(certain.error(kind, unit) for unit in row.units)
-    return error or None
+    kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
+    if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
+        return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
+    certain = certainty(study.results, replace(labels_of(study.spec), units=SI), of)
+    return certain.error(kind, unit) or None
 
 
 def _of_event(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:

@@ -84,6 +84,6 @@ def test_a_small_load_that_is_missing_is_seen_down_to_rounding_of_the_largest(pa
         for action in recovery.actions
     ]
     residual = balance_residual(
-        recovery.setup.scene.mechanism, recovery.states, actions, recovery.setup.scene.layout.size
+        recovery.setup.scene.mechanism, recovery.states, recovery.inertia, actions, recovery.setup.scene.layout.size
     )
     assert (residual > tolerances.UNBALANCED) == alarm

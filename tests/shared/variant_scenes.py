@@ -1,8 +1,8 @@
 """Scenes with numbers to vary whose measures are known in closed form, for what looks along one number.
 
-    PENDULUM   let go at the angle a from rest: the greatest tension, at the bottom, is m g (3 - 2 cos a)
-    CANTILEVER a force F at the angle a to a bar of length L: its root holds F and the moment F L sin a
-    TWO_BARS   of lengths p and b between supports d apart, a weight W where they meet: a triangle of forces
+PENDULUM   let go at the angle a from rest: the greatest tension, at the bottom, is m g (3 - 2 cos a)
+CANTILEVER a force F at the angle a to a bar of length L: its root holds F and the moment F L sin a
+TWO_BARS   of lengths p and b between supports d apart, a weight W where they meet: a triangle of forces
 """
 
 from __future__ import annotations

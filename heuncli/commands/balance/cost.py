@@ -21,6 +21,7 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
+from heuncli.redundancy.count import redundancy
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 from heuncli.spec.models import Spec
@@ -57,7 +58,7 @@ def loaded(
     times = angles / abs(rate)
     run = runner.trajectory(MotionTask(times, LOCAL, FOLLOWED, ()))
     recovered = runner.recovered(times, run.states)
-    note = model_note(own, runner, FOLLOWED.name)
+    note = model_note(own, runner, FOLLOWED.name, redundancy(own, runner))
     setup = Setup(spec, own, (), runner, FOLLOWED, note, reduced)
     return LoadedCycle(setup, Recovery(setup, recovered, False), plan.begin + angles)
 

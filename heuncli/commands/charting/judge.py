@@ -78,7 +78,7 @@ class Judge:
         layout, places, angles, largest = self.setup.scene.layout, 0.0, 0.0, 1.0
         with np.errstate(all="ignore"):  # what a method has lost may be anywhere
             for part, several in recovered_together(self.runs, self.reference, self.times, states):
-                far = points_apart(self.runs.marks, several, 2, layout.size)
+                far = points_apart(self.runs.marks, several.bodies, 2, layout.size)
                 turned, angle = angles_apart(layout, several, 2)
                 places, angles = max(places, _most(far)), max(angles, _most(turned))
                 largest = max(largest, float(angle.max(initial=1.0)))

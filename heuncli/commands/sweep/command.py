@@ -2,42 +2,71 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import partial
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
-from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit
+from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.output import say
 from heuncli.cli.solving import overrides, positive, tolerance
-from heuncli.cli.target import format_of
+from heuncli.cli.target import format_of, require_room
+from heuncli.cli.units import units
+from heuncli.commands.sweep.checks import problems_of, warnings_of
+from heuncli.commands.sweep.drawn import drawn
+from heuncli.commands.sweep.given import GivenAxis, of_word
 from heuncli.commands.sweep.request import FORMATS, SweepRequest
-from heuncli.commands.sweep.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.commands.sweep.told import FORMS
-from heuncli.errors import Problem
+from heuncli.commands.sweep.rows import SweepHead, SweptMeasure
+from heuncli.commands.sweep.running import Sweep, run
+from heuncli.commands.sweep.shards import shard_of
+from heuncli.commands.sweep.showing import show
+from heuncli.commands.sweep.store import Store
+from heuncli.commands.sweep.table import axes_in
+from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
+from heuncli.errors import Problem, SpecError
+from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
-from heuncli.variants.axes import HINT, Drawn, ParameterAxis, axis_of
+from heuncli.variants.axes import HINT, Drawn, ParameterAxis
+from heuncli.variants.keys import VariantKeys
 from heuncli.variants.plans import Plan, plan_of
 from heuncli.variants.stated import unit_of
 from heuncli.version import VERSION
 
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+USAGE = "heun sweep SPEC NAME=VALUES --measure WHAT"
 
 
 def main(request: SweepRequest) -> int:
     """Run the command; returns the exit code."""
+    how = telling_of(request)
+    if request.show is not None:
+        return show(request, how)
     path, words = spec_and_axes(request.words)
-    require_other_file(request.output, [path])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    shard = shard_of(request.shard)
+    _require_files(request, path)
     recipe = recipe_of(request, path)
-    asker = Asker(recipe)
+    given = given_by(request, words)
+    plan = plan_by(given, request)
+    asker = asker_of(recipe, plan)
     measure.check(recipe.measures, asker.spec)
-    plan = _plan(request, words, asker)
-    head = head_of(request, asker, plan)
-    rows = list(answered(asker, plan))
-    emit(FORMS[form](head, rows), request.output)
-    return 1 if request.strict and any(row.answer.code for row in rows) else 0
+    if problems := problems_of(given, asker, recipe.overrides):
+        raise SpecError(*problems)
+    plan = with_cases(plan, asker)
+    _require_files(request, path)  # the tables of the spec, too
+    for line in warnings_of(given, asker) if not request.quiet else ():
+        say(f"warning: {line}")
+    keys = VariantKeys(asker.recipe, varies_cases(asker.spec))
+    with Store(request.store) as store:
+        return run(Sweep(asker, head_of(request, asker, plan), keys, store, shard), request, how)
+
+
+def telling_of(request: SweepRequest) -> Telling:
+    """How the sweep is told. Raises UsageError, SpecError."""
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    how = Telling(form, request.output, units(request.units), request.all)
+    require_tellable(how)
+    return how
 
 
 def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
@@ -45,7 +74,7 @@ def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
     files = [word for word in words if "=" not in word]
     if len(files) != 1:
         found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"sweep: {found}", hint="heun sweep SPEC NAME=VALUES --measure WHAT"))
+        raise UsageError(Problem("bad-option", f"sweep: {found}", hint=USAGE))
     return files[0], [word for word in words if "=" in word]
 
 
@@ -54,31 +83,59 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
     if not request.measure:
         hint = "such as --measure 'max abs joints.main.force'"
         raise UsageError(Problem("bad-option", "sweep: nothing is measured", hint=hint))
+    if request.jobs is not None and request.jobs < 1:
+        message = f"--jobs {request.jobs}: expected 1 or more"
+        raise UsageError(Problem("bad-option", message, hint="such as --jobs 2"))
     options = Options(
         tolerance=tolerance(request.tolerance),
         method=request.method,
         step=positive("--step", request.step),
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
+        time_limit=request.time_limit_each,
     )
     measures = tuple(measure.parse_all(request.measure))
     return Recipe(path, text_in(path), measures, options, overrides(request.set))
 
 
-def _plan(request: SweepRequest, words: Sequence[str], asker: Asker) -> Plan:
+def given_by(request: SweepRequest, words: Sequence[str]) -> list[GivenAxis]:
+    """What is varied: the columns of a table, then the words. Raises UsageError, AxisError, SpecError."""
+    if not words and request.variants is None:
+        raise UsageError(Problem("bad-option", "sweep: nothing is varied", hint=f"{HINT}; or --variants FILE"))
+    columns = axes_in(request.variants) if request.variants is not None else ()
+    return [*columns, *measure.all_or_errors([partial(of_word, word) for word in words])]
+
+
+def plan_by(given: Sequence[GivenAxis], request: SweepRequest) -> Plan:
     """The variants. Raises AxisError."""
-    if not words:
-        raise UsageError(Problem("bad-option", "sweep: nothing is varied", hint=HINT))
-    axes = [axis_of(word) for word in words]
-    own = [axis for axis in axes if not isinstance(axis, Drawn)]
-    if varies_cases(asker.spec):
-        own = [_cases(axis, asker) if axis.name == CASE else axis for axis in own]
-    return plan_of(own, together=request.zip)
+    columns = [one.axis for one in given if one.column is not None and isinstance(one.axis, ParameterAxis)]
+    axes = [one.axis for one in given if one.column is None and not isinstance(one.axis, Drawn)]
+    draws = drawn([one.axis for one in given if isinstance(one.axis, Drawn)], request)
+    return plan_of(axes, together=request.zip, draws=draws, columns=columns)
 
 
-def _cases(axis: ParameterAxis, asker: Asker) -> ParameterAxis:
-    """The load cases that are named, or all of them."""
-    return ParameterAxis(CASE, tuple(asker.spec.cases)) if list(axis.texts) == ["all"] else axis
+def asker_of(recipe: Recipe, plan: Plan) -> Asker:
+    """What answers the variants, of a spec that need not be sound without their values. Raises SpecError."""
+    try:
+        return Asker(recipe)
+    except SpecError as error:
+        for number in (0, plan.size - 1):
+            values = {name: text for name, text in plan.values(number).items() if name != CASE}
+            try:
+                return Asker(recipe._replace(overrides={**recipe.overrides, **values}))
+            except SpecError:
+                continue
+        raise error
+
+
+def with_cases(plan: Plan, asker: Asker) -> Plan:
+    """The plan with `case=all` as every load case."""
+    if not varies_cases(asker.spec):
+        return plan
+    every = ParameterAxis(CASE, tuple(asker.spec.cases))
+    is_every = [axis.name == CASE and list(axis.texts) == [ALL_CASES] for axis in plan.axes]
+    axes = [every if all_ else axis for axis, all_ in zip(plan.axes, is_every, strict=True)]
+    return plan_of(axes, together=plan.together, draws=plan.draws, columns=plan.columns)
 
 
 def head_of(request: SweepRequest, asker: Asker, plan: Plan) -> SweepHead:
@@ -89,8 +146,12 @@ def head_of(request: SweepRequest, asker: Asker, plan: Plan) -> SweepHead:
     return SweepHead(spec.title, spec.path, spec.sha256, VERSION, plan, measures)
 
 
-def answered(asker: Asker, plan: Plan) -> Iterator[SweptRow]:
-    """The rows, one after the other."""
-    for number in plan.numbers():
-        values = plan.values(number)
-        yield SweptRow(number, values, asker.answer(values))
+def _require_files(request: SweepRequest, path: str) -> None:
+    """What is written is nothing that is read. Raises UsageError, OutputError."""
+    require_other_file(request.output, [path])
+    if request.store is None:
+        return
+    require_room(request.store, "--store")
+    require_other_file(request.store, [path], "--store")
+    if request.output is not None and same_file(request.store, request.output):
+        raise UsageError(Problem("bad-option", "--store and -o name the same file", hint="name another file"))

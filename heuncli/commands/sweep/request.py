@@ -5,7 +5,7 @@ from typing import Annotated
 from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
-FORMATS = ("table", "json", "csv")
+FORMATS = ("table", "json", "csv", "parquet")
 
 
 class SweepRequest(NamedTuple):
@@ -16,11 +16,11 @@ class SweepRequest(NamedTuple):
         Option(
             (),
             "The scene's YAML file, and what is varied: n=1000:6000/51rpm, L=0.1,0.12,0.15, c=1:1000/31log, case=all, "
-            "d=normal(100,0.1)mm.",
+            "d=normal(100,0.1)mm, r=uniform(a,b), lhs(a,b), sobol(a,b).",
             "SPEC NAME=VALUES...",
             completes="spec",
         ),
-    ]
+    ] = ()
     measure: Annotated[
         tuple[str, ...],
         Option(
@@ -31,6 +31,33 @@ class SweepRequest(NamedTuple):
         ),
     ] = ()
     zip: Annotated[bool, Option(("--zip",), "The values of one place together, not all combinations.")] = False
+    variants: Annotated[
+        str | None,
+        Option(("--variants",), "A CSV table of variants: a column a parameter, a row a variant.", "FILE"),
+    ] = None
+    store: Annotated[
+        str | None,
+        Option(("--store",), "Keep every row there as it is done; what is there already is not solved again.", "FILE"),
+    ] = None
+    show: Annotated[
+        str | None,
+        Option(("--show",), "Print the last sweep of a store, or the one of that number; solves nothing.", "FILE[:N]"),
+    ] = None
+    shard: Annotated[
+        str | None,
+        Option(("--shard",), "One part of so many, such as 2/8: every eighth variant, from the second on.", "K/N"),
+    ] = None
+    jobs: Annotated[
+        int | None, Option(("--jobs", "-j"), "Processes. Default: one a processor, from eight variants on.", "N")
+    ] = None
+    time_limit_each: Annotated[
+        float | None, Option(("--time-limit",), "Give up on a variant after that long; the others go on.", "SECONDS")
+    ] = None
+    samples: Annotated[int | None, Option(("--samples",), "How many of what is drawn at random.", "N")] = None
+    seed: Annotated[int | None, Option(("--seed",), "Of what is drawn at random. Default: 0.", "S")] = None
+    indices: Annotated[
+        bool, Option(("--indices",), "Sobol indices of what is drawn: N (d + 2) variants for d parameters.")
+    ] = False
     format: Annotated[
         str | None,
         Option(
@@ -50,6 +77,15 @@ class SweepRequest(NamedTuple):
     ] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    dask: Annotated[
+        str | None,
+        Option(
+            ("--dask",),
+            "The scheduler of a Dask cluster whose workers solve the variants; takes heuncli[dask].",
+            "tcp://HOST:PORT",
+        ),
+    ] = None
     units: Annotated[str | None, UNITS] = None
+    all: Annotated[bool, Option(("--all",), "Tables show all variants, however many.")] = False
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a variant could not be solved.")] = False
     quiet: Annotated[bool, QUIET] = False

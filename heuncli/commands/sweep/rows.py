@@ -8,6 +8,8 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.variants.asking import Answer
 from heuncli.variants.plans import Plan
 
+WORKER_DIED = "worker-died"  # the code of a variant that ends the processes that solve it
+
 
 class SweptMeasure(NamedTuple):
     """A measure in the words in which it was asked for, and its SI unit (empty: none)."""

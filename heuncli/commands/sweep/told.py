@@ -1,51 +1,78 @@
-"""The rows of a sweep as a table, CSV and JSON."""
+"""A sweep as it is told: tables, CSV, JSON, Parquet, each from rows that come one after the other. Impure: writes."""
 
 from __future__ import annotations
 
-import csv
-import io
-from collections.abc import Callable, Iterable
-from typing import Any
+import sys
+from collections.abc import Iterable, Iterator
 
+from heuncli.cli import files, terminal
+from heuncli.cli.entry import UsageError
+from heuncli.cli.output import emit
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.report.export import dump
-from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
+from heuncli.errors import Problem
+from heuncli.named_tuples import NamedTuple
+from heuncli.report.page_width import fit
+from heuncli.report.table_units import Units
+from heuncli.report.text_table import WIDTH, TextTable, plain
+
+ENDINGS = {".json": "json", ".csv": "csv", ".parquet": "parquet", ".txt": "table", "": "table"}
 
 
-def table(head: SweepHead, rows: Iterable[SweptRow]) -> str:
-    """A line a variant."""
-    columns = [TextColumn(name, "left") for name in head.plan.names]
-    columns += [TextColumn(f"{one.text} [{one.unit}]" if one.unit else one.text, "point") for one in head.measures]
-    body = tuple(
-        (*row.values.values(), *(_cell(one.value, one.word) for one in row.answer.measures), row.answer.code)
-        for row in rows
-    )
-    return plain(TextTable(f"SWEEP  {head.title}", (*columns, TextColumn("", "left")), body), WIDTH)
+class Telling(NamedTuple):
+    """How a sweep is told: in which form, where (None: standard output), in which units of tables, all rows or some."""
+
+    form: str
+    output: str | None = None
+    units: Units = Units()
+    all: bool = False
 
 
-def _cell(value: float | None, word: str) -> str:
-    return word if value is None else f"{value:.6g}"
+def require_tellable(how: Telling) -> None:
+    """Say before the work what could not be told after it. Raises UsageError, SpecError."""
+    if how.form != "parquet":
+        return
+    if how.output in (None, files.STDOUT):
+        raise UsageError(Problem("bad-option", "parquet goes to a file only", hint="name it: -o sweep.parquet"))
+    from heuncli.commands.sweep.as_parquet import require_parquet
+
+    require_parquet()
 
 
-def to_csv(head: SweepHead, rows: Iterable[SweptRow]) -> str:
-    """A line a variant: its values, each measure with error and instant, and why there is none."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    measures = [part for one in head.measures for part in (one.text, f"{one.text}: error", f"{one.text}: at")]
-    writer.writerow([*head.plan.names, *measures, "code", "reason"])
-    for row in rows:
-        found = [part for one in row.answer.measures for part in (one.value, one.error, one.at)]
-        writer.writerow([*row.values.values(), *found, row.answer.code, row.answer.reason])
-    return text.getvalue()
+def tell(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> None:
+    """Write the sweep; rows by rising numbers, read once. Raises OutputError."""
+    if how.form == "parquet":
+        from heuncli.cli import alarm
+        from heuncli.commands.sweep.as_parquet import parquet_pieces
+
+        assert how.output is not None
+        alarm.disarm(late=True)
+        files.write(parquet_pieces(head, rows), how.output)
+    else:
+        emit(pieces(head, rows, how), how.output)
 
 
-def to_json(head: SweepHead, rows: Iterable[SweptRow]) -> str:
-    """All of it."""
-    return dump({"heun": 1, "title": head.title, "rows": [_block(row) for row in rows]})
+def pieces(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
+    """The sweep as text."""
+    if how.form == "csv":
+        from heuncli.commands.sweep.as_csv import csv_pieces
+
+        return csv_pieces(head, rows)
+    if how.form == "json":
+        from heuncli.commands.sweep.as_json import json_pieces
+
+        return json_pieces(head, rows)
+    return _page(head, rows, how)
 
 
-def _block(row: SweptRow) -> dict[str, Any]:
-    return {"set": dict(row.values), "measures": [one._asdict() for one in row.answer.measures]}
+def _page(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
+    from heuncli.commands.sweep.page import tables
+
+    on_terminal = how.output is None and terminal.present()
+    found = tables(head, rows, how.units, how.all, sys.stdout.encoding if on_terminal else None)
+    texts = terminal.write(found) if on_terminal else [_plain(table) for table in found]
+    for number, text in enumerate(texts):
+        yield "\n" * (number > 0) + text
 
 
-FORMS: dict[str, Callable[[SweepHead, Iterable[SweptRow]], str]] = {"table": table, "csv": to_csv, "json": to_json}
+def _plain(table: TextTable) -> str:
+    return "\n".join(plain(part, WIDTH) for part in fit(table, WIDTH))

@@ -11,24 +11,54 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
-from heuncli.results import Array
+from heuncli.results import Array, Indices
+from heuncli.shapes.by_component import largest, rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
+ROUNDED_UP = 1.0 + 1e-9  # more than rounding makes of a distance
 
-def motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
-    """Estimated error of any point, relative to the size, (n,); the answers are those of so many runs."""
-    far = np.abs(several.bodies[0::count]["r"]).max(axis=(1, 2)) / size
-    apart = np.max([points_apart(marks, several, count, size, k) for k in range(count - 1)], axis=0)
+
+def motion_error(marks: Marks, bodies: Table, count: int, size: float) -> Array:
+    """Estimated error of any point, relative to the size, (n,); bodies: the answers' of so many runs."""
+    far = np.abs(bodies[0::count]["r"]).max(axis=(1, 2)) / size
+    apart = np.max([points_apart(marks, bodies, count, size, k) for k in range(count - 1)], axis=0)
     return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
 
 
-def points_apart(marks: Marks, several: Recovered, count: int, size: float, first: int = 0) -> Array:
+def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
+    """Bounds of that error (n,); it is the error itself where it is largest, and where it may pass CLAIMED.
+
+    A point is no farther apart than its body's joint point, and what the body has turned by times the longest arm. That
+    takes a tenth of a look at all points, and leaves few instants at which these are to be looked at.
+    """
+    bodies = len(marks.reach)
+    r, R = (rows(several.bodies[name]).reshape(bodies, -1, len(several.times)) for name in ("r", "R"))
+    far, apart = largest(r[..., 0::count]) / size, np.zeros(len(several.times) // count)
+    for k in range(count - 1):
+        for other in range(k + 1, count):
+            dr, dR = (x[..., other::count] - x[..., k::count] for x in (r, R))
+            off = np.sqrt((dr * dr).sum(axis=1)) + np.sqrt((dR * dR).sum(axis=1)) * marks.reach[:, None]
+            np.maximum(apart, off.max(axis=0), out=apart)
+    bound = ROUNDED_UP * (2.0 * (apart / size) + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
+
+    def error(which: Indices) -> Array:
+        own = several.bodies[(count * which[:, None] + np.arange(count)).ravel()]
+        return motion_error(marks, own, count, size)
+
+    if not np.isfinite(bound).all():
+        return error(np.arange(len(bound)))
+    most = float(error(np.argmax(bound, keepdims=True))[0])
+    which = np.flatnonzero(bound >= min(most, tolerances.CLAIMED))
+    bound[which] = error(which)
+    return bound
+
+
+def points_apart(marks: Marks, bodies: Table, count: int, size: float, first: int = 0) -> Array:
     """How far any point is, at most, in one of so many runs from where it is in a later one, by the size, (n,).
 
     first: the number of the one.
     """
-    bodies = several.bodies
     own = bodies[first::count]
     return np.asarray(np.max([marks.apart(own, bodies[k::count]) for k in range(first + 1, count)], axis=0) / size)
 
@@ -79,6 +109,8 @@ class Marks:
             owner += [layout.place[i]] * len(points)
             arms += [p - layout.reference[layout.place[i]] for p in points]
         self.owner, self.arms = np.array(owner), np.array(arms)
+        self.reach = np.zeros(len(bodies))  # the longest arm of each body
+        np.maximum.at(self.reach, self.owner, np.sqrt(np.sum(self.arms**2, axis=1)))
 
     def apart(self, a: Table, b: Table) -> Array:
         """Largest distance of any of the points between two sets of `Recovered.bodies`, (n_t,) [m]."""

@@ -32,7 +32,7 @@ from typing import TYPE_CHECKING, Protocol, TypeAlias
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.integration.check.distance import angle_error, motion_error
+from heuncli.integration.check.distance import angle_error, bounded_motion_error
 from heuncli.integration.check.instants import OwnStates, instants_of, interleaved, passed_between
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.check.shared_blows import between_strikes
@@ -231,7 +231,7 @@ def errors(runs: Runs, a: Trajectory, times: Array, states: Sequence[StatesThere
     several = None
     for part, several in recovered_together(runs, a, times, states):
         with np.errstate(over="ignore", invalid="ignore"):  # given steps that run away: errors without bound
-            places[part] = motion_error(runs.marks, several, len(states), layout.size)
+            places[part] = bounded_motion_error(runs.marks, several, len(states), layout.size)
             angles[part], turned = angle_error(layout, several, len(states))
         largest = max(largest, turned)
     whole = several if several is not None and len(several.times) == len(states) * len(times) else None
@@ -261,9 +261,11 @@ def recovered_at(
     runner: Runner, run: Trajectory, times: Array, states: Array, jumps: Sequence[float], *, causes: bool = False
 ) -> Recovered:
     """Accelerations and loads of states like those of a run; at a discontinuity the right limits."""
-    before, after = limits_of(jumps)
-    next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
-    later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times) if len(after) else times
+    later = times
+    if len(jumps):
+        before, after = limits_of(jumps)
+        next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
+        later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times)
     branches = run.branches_at(times) if run.branches.size else None
     found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
     return replace(found, times=times)

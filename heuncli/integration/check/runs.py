@@ -54,10 +54,9 @@ class Runs:
         at: other instants than the asked ones, to which a check run goes: as far as the run that it checks, though the
         condition that ends the motion became true.
         """
-        request = MotionTask(
-            self.times if at is None else at, local, by or self.method, self.jumps, start, self.deadline, most_steps
-        )
-        told = at is None
+        told, times = at is None, self.times if at is None else at
+        method = by or self.method
+        request = MotionTask(times, local, method, self.jumps, start, self.deadline, most_steps, keeping=told)
         rules = StoppingRules(ending=told, stiffness=told and self.watched, events=told and self.eventful)
         return self.runner.trajectory(request, rules)
 

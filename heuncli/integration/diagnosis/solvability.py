@@ -32,10 +32,12 @@ class Wording:
 
 def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wording = Wording()) -> None:  # noqa: B008
     """Raise SolveError for accelerations that are not finite, freedoms without inertia, moments about such axes."""
-    finite = np.isfinite(recovered.bodies.view(np.float64)).all(axis=1)
-    if not finite.all():
-        raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
-    require_range(scene, recovered)
+    moved, loads = np.abs(recovered.bodies.view(np.float64)), np.abs(recovered.loads["value"])
+    if not max(moved.max(initial=0.0), loads.max(initial=0.0)) <= tolerances.MOST_MAGNITUDE:  # also what is no number
+        finite = np.isfinite(moved).all(axis=1)
+        if not finite.all():
+            raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
+        require_range(scene, recovered, np.maximum(moved.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0)))
     for k in np.flatnonzero(recovered.idle > 0).tolist():
         from heuncli.integration.diagnosis.massless_motions import is_idle
 
@@ -67,13 +69,12 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wordin
             raise SolveError(Problem("no-inertia", message, hint=hint))
 
 
-def require_range(scene: PreparedScene, recovered: Recovered) -> None:
+def require_range(scene: PreparedScene, recovered: Recovered, largest: Array) -> None:
     """Raise SolveError for motions of bodies and for loads that are too large to be computed with: squares are next.
 
-    What is small passes: it is on its way through 0.
+    largest (n_t,): at each instant. What is small passes: it is on its way through 0.
     """
-    moved, loads = np.abs(recovered.bodies.view(np.float64)), np.abs(recovered.loads["value"])
-    large = np.maximum(moved.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0)) > tolerances.MOST_MAGNITUDE
+    large = largest > tolerances.MOST_MAGNITUDE
     if large.any():
         raise SolveError(*too_large(scene, recovered, int(np.argmax(large))))
 

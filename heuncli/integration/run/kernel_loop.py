@@ -30,6 +30,7 @@ UNWATCHED = {"stiff_after": 0, "easy_after": 0, "look_after": 0, "stable": 0.0}
 # What is put down of each step: its end [s], whether its stages were settled on the closures, the least pivot of these,
 # whether branches turned at its end.
 PER_STEP = ("ends", "settled", "pivots", "turned")
+SPAN = 3  # numbers beside a polynomial: whether it was left, begin and length of its step [s]
 
 
 @record
@@ -53,8 +54,10 @@ class KernelLoop:
     """The kernel's loop over the asked instants, at most `most` steps at a time, with the arrays it writes to."""
 
     def __init__(
-        self, layout: Layout, workspace: Workspace, method: Method, times: Array, most: int, start: Start
-    ) -> None:
+        self, layout: Layout, workspace: Workspace, method: Method, times: Array, most: int, start: Start,
+        *, keeping: bool = False,
+    ) -> None:  # fmt: skip
+        """keeping: the polynomials of steps that make one are put down."""
         if method.foreign:
             raise ValueError(f"the kernel has no stages of {method.name}")
         n = self.n = layout.n_state
@@ -63,10 +66,16 @@ class KernelLoop:
         self.most, self.per_step = most, np.zeros((len(PER_STEP), most))
         self.held = layout.pack.held
         self.branches = np.zeros(most * self.held)
-        self.passed = np.zeros(0 if start.following else most * self.width)
+        self.passed = np.empty(0 if start.following else most * self.width)
         self.count = len(times)
         self.samples = np.zeros(self.count * n)
-        output = {"times": flat(times), "samples": self.samples, "passed": self.passed, "branches": self.branches}
+        self.keeping = keeping
+        self.spans = np.empty(SPAN * most if keeping else 0)
+        self.courses = np.empty((4 + method.arrays["dense_rows"]) * n * most if keeping else 0)
+        output = {
+            "times": flat(times), "samples": self.samples, "passed": self.passed, "branches": self.branches,
+            "spans": self.spans, "courses": self.courses,
+        }  # fmt: skip
         output.update(zip(PER_STEP, self.per_step, strict=True))
         self.loop = integration.Integration(workspace, method.arrays, begin_with(start, method, layout), output)
 
@@ -78,6 +87,11 @@ class KernelLoop:
         """What the steps after those just done start from: of every so many, (count, width); a view."""
         done = self.loop.done
         return self.passed[: done * self.width].reshape(done, self.width)[offset::every]
+
+    def put_down_courses(self) -> tuple[Array, Array]:
+        """What the steps just done left of their polynomials, (count, .) each: where they hold, and their numbers."""
+        done = self.loop.done
+        return self.spans.reshape(self.most, -1)[:done], self.courses.reshape(self.most, -1)[:done]
 
     def held_branches(self) -> Array:
         """The branches that the steps just done held, (count, n); a view."""

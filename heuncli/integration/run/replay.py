@@ -1,4 +1,6 @@
-"""States of a run at other instants: its own steps are done once more, from records that were kept of it.
+"""States of a run at other instants: by what its steps left of themselves, else they are done once more.
+
+Steps are done again from records that were kept of some of them.
 
 To the last bit what the run would have given, had these instants been among those it was asked for; and what it gave,
 where they were. It takes no other steps than the run, so it costs at most as much and succeeds wherever the run did.
@@ -15,7 +17,7 @@ from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.integration.run.errors import TROUBLE
 from heuncli.integration.run.kernel_loop import KernelLoop, Start
 from heuncli.integration.trajectory import Trajectory
-from heuncli.results import Array
+from heuncli.results import Array, Indices, Mask
 
 
 def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
@@ -24,13 +26,20 @@ def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
     if run.within is not None:
         return run.within(times)
     out = np.empty((len(times), run.states.shape[1]))
-    own = np.minimum(np.searchsorted(run.times, times), len(run.times) - 1)
+    own = np.minimum(run.times.searchsorted(times), len(run.times) - 1)
+    known = asked = run.times[own] == times
     for blow in run.blows:  # its own instant shows the state behind it
-        out[times == blow.time] = blow.after
-    asked = run.times[own] == times
+        struck = times == blow.time
+        out[struck], known = blow.after, known | struck
     out[asked] = run.states[own[asked]]
-    others = np.flatnonzero(~(asked | np.isin(times, [blow.time for blow in run.blows])))
-    step = np.searchsorted(run.ends, times[others])  # the step in which an instant lies
+    others = (~known).nonzero()[0]
+    step = run.ends.searchsorted(times[others])  # the step in which an instant lies
+    told, states = by_its_steps(moving, run, times[others], step)
+    if len(states):
+        out[others[told]] = moving.embed(times[others[told]], states)
+        others, step = others[~told], step[~told]
+    if not len(others):
+        return out
     base = np.searchsorted(run.kept.steps, step, side="right") - 1
     # consecutive steps are replayed together
     breaks = np.flatnonzero((np.diff(step) > 1) & (np.diff(base) > 0)) + 1
@@ -40,6 +49,32 @@ def resampled(moving: IntegratedScene, run: Trajectory, times: Array) -> Array:
             states = replayed(moving, run, int(base[group[0]]), int(step[group[-1]]), times[to])
             out[to] = moving.embed(times[to], states)
     return out
+
+
+def by_its_steps(moving: IntegratedScene, run: Trajectory, times: Array, step: Indices) -> tuple[Mask, Array]:
+    """At which instants, in these steps, the states of what is integrated follow from what was kept, and these.
+
+    They do within steps whose polynomials were kept, and at the ends of steps behind which the next one's start was.
+    """
+    n = moving.layout.n_state
+    states = np.empty((len(times), n))
+    told = np.zeros(len(times), dtype=bool)
+    if not len(times) or not len(run.ends):
+        return told, states
+    if run.courses is not None:
+        told = run.courses.known(times, step, run.ends)
+        if told.all():
+            return told, run.courses.states(times, step, n)
+        states[told] = run.courses.states(times[told], step[told], n)
+    at_end = times == run.ends[step]
+    if at_end.any():
+        next_ = np.minimum(run.kept.steps.searchsorted(step + 1), len(run.kept) - 1)
+        at_end &= run.kept.steps[next_] == step + 1
+        if run.after_blows:  # whose records are of the states behind the blows
+            at_end &= ~np.isin(step + 1, list(run.after_blows))
+        states[at_end] = run.kept.records[next_[at_end], :n]
+        told = told | at_end
+    return told, states[told]
 
 
 def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:

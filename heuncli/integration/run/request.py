@@ -21,7 +21,8 @@ class MotionTask:
     times (n_t,) ascending [s]: it ends with the last of them; local: the tolerance of a step, or of a method of given
     steps their length [s]; discontinuities: instants [s] at which a load or drive in time is not smooth; start (n,): a
     state of the scene beside its own, to see what rounding makes of a run: events are then late by rounding, too;
-    deadline: by time.monotonic(); most_steps: after which it is given up.
+    deadline: by time.monotonic(); most_steps: after which it is given up; keeping: it will be asked for other
+    instants, and keeps what its steps know of these.
     """
 
     times: Sequence[float] | Array
@@ -31,6 +32,7 @@ class MotionTask:
     start: Array | None = None
     deadline: float | None = None
     most_steps: int = tolerances.MOST_STEPS
+    keeping: bool = False
 
     @cached_property
     def instants(self) -> Array:

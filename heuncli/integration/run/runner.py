@@ -25,6 +25,7 @@ from heuncli.integration.run.request import FOR_ITS_ENDING, MotionTask, Stopping
 from heuncli.integration.run.stepper import Stepper, begun
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
+from heuncli.stages import ANEW, Stages
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene, lacking_inertia
 
@@ -74,9 +75,9 @@ class Runner(Evaluator):
         return resampled(self.moving, run, times)
 
 
-def ready(scene: PreparedScene) -> tuple[PreparedScene, Runner]:
+def ready(scene: PreparedScene, stages: Stages = ANEW) -> tuple[PreparedScene, Runner]:
     """A scene to be run and its work arrays: inertia is lent where motions of its tree move no mass."""
-    lacking = lacking_inertia(scene)
+    lacking = lacking_inertia(scene, stages)
     if lacking:
         from heuncli.integration.diagnosis.massless_motions import lend  # few scenes need it
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.integration.run.kernel_loop import PER_STEP, KernelLoop
 from heuncli.integration.run.pace import FIRST_LOOK
-from heuncli.integration.trajectory import Kept
+from heuncli.integration.trajectory import Courses, Kept
 from heuncli.results import Array
 
 FIRST_ROOM = 64  # rows
@@ -49,6 +49,7 @@ class Steps:
         self.kept, self.width = GrowingRows(width), width
         self.kept.add(self.whole(start))
         self.every, self.room = 1, max(2, KEPT // max(width, 1))
+        self.courses: tuple[GrowingRows, GrowingRows] | None = None
         self.after: dict[int, Array] = {}  # of the steps after blows, which are kept in any case
         self.look = FIRST_LOOK
         self.holdings: list[tuple[int, Array]] = []  # from which step on which contacts are closed
@@ -91,10 +92,25 @@ class Steps:
             self.branches.add(kernel.held_branches())
         first = self.count // self.every * self.every + self.every  # the next number of which one is kept
         self.kept.add(kernel.records(self.every, first - self.count - 1))
+        if kernel.keeping:
+            self.add_courses(kernel)
         self.count += done
         while self.kept.count > self.room:
             self.every *= 2
             self.kept.thin()
+
+    def add_courses(self, kernel: KernelLoop) -> None:
+        """Add the polynomials of the last call; those of a run that comes to have too many are let go."""
+        parts = kernel.put_down_courses()
+        self.courses = self.courses or (GrowingRows(parts[0].shape[1]), GrowingRows(parts[1].shape[1]))
+        for rows, part in zip(self.courses, parts, strict=True):
+            rows.add(part)
+        if sum(rows.rows.size for rows in self.courses) > MOST_COURSES:
+            self.courses, kernel.keeping = None, False
+
+    def kept_courses(self) -> Courses | None:
+        """The polynomials of all steps."""
+        return None if self.courses is None else Courses(*(rows.rows for rows in self.courses))
 
     def doubled(self) -> bool:
         """Whether there are twice as many as when this was last so."""
@@ -119,5 +135,6 @@ class Steps:
         return self.branches.rows if self.branches is not None else np.zeros((0, 0))
 
 
+MOST_COURSES = 1_000_000  # numbers in the polynomials that are kept; beyond, steps are done again
 KEPT = 20_000_000  # numbers in the states kept for replays, at the ends of all steps or of every second, fourth, ...
 PASSED = 100_000  # of these states, at most, on the way to an error

@@ -65,7 +65,8 @@ def begun(scene: Evaluator, moving: IntegratedScene, request: MotionTask, rules:
     state = moving.restrict(0.0, scene.layout.y0 if start is None else start)
     begin = Start(state, request.local, rate, late=start is not None, watched=rules.stiffness)
     most = chunk_of(moving.layout, request.method)
-    kernel = KernelLoop(moving.layout, moving.workspace, request.method, request.instants, most, begin)
+    times, keeping = request.instants, request.keeping
+    kernel = KernelLoop(moving.layout, moving.workspace, request.method, times, most, begin, keeping=keeping)
     return Progress(scene, moving, kernel, Steps(state, kernel.width), last)
 
 
@@ -226,7 +227,7 @@ class Stepper:
             times=times, states=progress.moving.embed(times, states), ends=steps.column("ends"),
             steps=kernel.loop.steps, evaluations=kernel.loop.evaluations, gap=kernel.loop.gap,
             local=kernel.start.local, method=kernel.method, seconds=seconds, segments=Segments(self.pieces.rows),
-            kept=steps.records(), pivots=steps.column("pivots"), settled=steps.column("settled"),
+            kept=steps.records(), courses=steps.kept_courses(), pivots=steps.column("pivots"), settled=steps.column("settled"),
             branches=steps.held_branches(), turned=steps.column("turned"), undecided=kernel.loop.undecided,
             stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
             behind=np.array(progress.moving.layout.pack.expressions.branches()),

@@ -40,6 +40,10 @@ class NotOneNumber(HeunError):
         super().__init__(Problem("bad-option", message, hint=hint))
 
 
+class NotInThisRun(NotOneNumber):
+    """What is to be measured does not happen in this run; in another one of the scene it may."""
+
+
 class MeasureRequest(NamedTuple):
     """What is measured; how is empty for a number that has no instants, abs for the largest magnitude."""
 
@@ -109,7 +113,7 @@ def of_event(asked: MeasureRequest, there: Numbers) -> Peak:
         hint = f"'first {asked.path}', 'final {asked.path}', or its place: {asked.path}.0"
         raise NotOneNumber(f"{asked.path} is told of an event, once for each change", hint)
     if not there.values.size:
-        raise NotOneNumber(f"{asked.path}: the event does not happen in this run", "run longer, or set another limit")
+        raise NotInThisRun(f"{asked.path}: the event does not happen in this run", "run longer, or set another limit")
     return Peak(float(there.values[0 if asked.how == "first" else -1]), None)
 
 
@@ -240,5 +244,5 @@ def instant_of(asked: MeasureRequest, times: Array) -> float:
     slack = tolerances.SAME_INSTANT * float(np.ptp(times))
     if not times[0] - slack <= at <= times[-1] + slack:
         hint = f"such as 'at {times[-1]:.6g} {asked.path}'"
-        raise NotOneNumber(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
+        raise NotInThisRun(f"{asked.path} at {at:.6g}: the run goes from {times[0]:.6g} to {times[-1]:.6g} s", hint)
     return float(np.clip(at, times[0], times[-1]))

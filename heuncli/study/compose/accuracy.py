@@ -54,7 +54,8 @@ class Balance:
         if self.of_energy:
             self.add_energy(recovery)
         self.gap = larger(self.gap, float(recovery.recovered.gap.max(initial=0.0)))
-        self.residual = larger(self.residual, balance_residual(mechanism, recovery.states, recovery.actions, size))
+        off = balance_residual(mechanism, recovery.states, recovery.inertia, recovery.actions, size)
+        self.residual = larger(self.residual, off)
         return self
 
     def add_energy(self, recovery: Recovery) -> None:

@@ -43,14 +43,14 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         actions = [*recovery.applied, *joint_actions(recovery.joints)]
         shown["foundation"] = foundation(mechanism, states, actions, recovery.setup.about)
     if "joints" in wanted:
-        shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.joints}
-        shown["stops"] = stops(recovery.joints)
+        shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
+        shown["stops"] = stops(recovery.asked_joints)
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
         put_shares(shown, recovery.shares, mechanism, states, recovery.setup.about)
     axes = recovery.setup.asked.axes
-    for load in recovery.joints if axes != "world" and "joints" in shown else ():
+    for load in recovery.asked_joints if axes != "world" and "joints" in shown else ():
         put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
     if shown and recovery.decided is not None:
         recovery.decided.show(states, shown, axes)

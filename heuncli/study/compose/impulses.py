@@ -118,14 +118,15 @@ class Impulses:
         """What the impulses are summed from, by unit."""
         recovery = self.recovery
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
-        own = magnitudes(mechanism, recovery.states, recovery.actions, recovery.energy, size).by_unit
+        own = magnitudes(mechanism, recovery.states, recovery.inertia, recovery.actions, recovery.energy, size).by_unit
         return {UNITS[unit]: own[unit] for unit in UNITS}
 
     @property
     def residual(self) -> float:
         """What of d'Alembert's principle the impulses leave unmet, of the largest."""
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
-        return balance_residual(mechanism, self.recovery.states, self.recovery.actions, size)
+        own = self.recovery
+        return balance_residual(mechanism, own.states, own.inertia, own.actions, size)
 
     def blocks(self) -> list[Block]:
         """The blocks of all blows."""

@@ -15,7 +15,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.magnitudes import magnitudes
+from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes
 from heuncli.kinetostatics.reactions import JointLoads, joint_loads
 from heuncli.mechanism.model import PairLoad
 from heuncli.records import record, replace
@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loa
 
 HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
 OF_ENERGY = frozenset({"energy", BLOWS})  # reports that tell energies
-WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy"})  # what is open has no say in them
+WITHOUT_VERDICTS = frozenset({"states", "unsplit", "loads", "energy", "inertia"})  # what is open has no say in them
 WITHOUT_CUTS = WITHOUT_VERDICTS | {"decided", "shares"}
 
 
@@ -83,7 +83,8 @@ class Recovery:
 
         if self.told:
             return Resolution(self.unsplit)
-        return resolve(self.setup.runner, self.recovered, self.states, self.unsplit, self.least_norm)
+        setup = self.setup
+        return resolve(setup.runner, self.recovered, self.states, self.unsplit, self.least_norm, setup.known)
 
     @property
     def verdicts(self) -> bool:
@@ -98,6 +99,16 @@ class Recovery:
         if self.decided is not None:
             return self.decided.joints
         return self.unsplit
+
+    @cached_property
+    def asked_joints(self) -> list[JointLoads]:
+        """The reactions of the joints that are asked for, or that a stop which is asked for stands in."""
+        asked = self.setup.asked
+        if self.decided is not None or "joints" not in asked.partial or "unsplit" in self.__dict__:
+            return self.joints
+        mechanism = self.setup.scene.mechanism
+        stopped = {mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in asked.of("stops")}
+        return joint_loads(self.setup.scene.layout, self.recovered, self.states, asked.of("joints") | stopped)
 
     @cached_property
     def unsplit(self) -> list[JointLoads]:
@@ -138,7 +149,7 @@ class Recovery:
         """The actions of the applied loads, and of what is given beside them."""
         return [*(load.action for load in self.loads), *self.given]
 
-    @property
+    @cached_property
     def actions(self) -> list[Action]:
         """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
         return [*self.applied, *whole_joint_actions(self.joints if self.verdicts else self.unsplit)]
@@ -153,7 +164,12 @@ class Recovery:
         """What the numbers are summed from."""
         scene = self.setup.scene
         energy = self.energy if OF_ENERGY & self.setup.asked.reports else {}
-        return magnitudes(scene.mechanism, self.states, self.actions, energy, scene.layout.size)
+        return magnitudes(scene.mechanism, self.states, self.inertia, self.actions, energy, scene.layout.size)
+
+    @cached_property
+    def inertia(self) -> Array:
+        """The largest inertia load or weight of each body, (n_t, n) [N]."""
+        return inertia_scale(self.setup.scene.mechanism, self.states)
 
     @property
     def generic(self) -> Array:

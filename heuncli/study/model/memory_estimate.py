@@ -102,7 +102,7 @@ def numbers_at_an_instant(setup: Setup) -> float:
 def answer_count(setup: Setup) -> float:
     """How many numbers the kernel answers at an instant."""
     layout = setup.scene.layout
-    own = sum(kind.itemsize // 8 * count for kind, count in answer_sizes(layout))
+    own = sum(kind.itemsize // 8 * count for kind, count in answer_sizes(layout).values())
     causes = len(layout.tables["loads"]) + BESIDE_LOADS if SHARES in setup.asked.reports else 0
     return float(own + layout.n_state + causes * setup.runner.workspace.column_width)
 

@@ -13,7 +13,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import Mechanism
 from heuncli.reduction.model import Reduced
-from heuncli.redundancy.count import redundancy
+from heuncli.redundancy.count import Redundancy
 from heuncli.results import Block, Mask
 from heuncli.study.model.counts_and_lists import count, some
 from heuncli.tree.layout import Layout
@@ -25,13 +25,12 @@ if TYPE_CHECKING:  # loaded where a scene has closed chains
 COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
 
 
-def model_note(scene: PreparedScene, runner: Runner, method: str) -> Block:
+def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redundancy) -> Block:
     """The block `model`: freedoms, loops, redundancy, and the reasons in sentences.
 
-    Spins that no law determines are no freedoms, though Grübler counts them.
+    found: what is held twice. Spins that no law determines are no freedoms, though Grübler counts them.
     """
     mechanism, layout = scene.mechanism, scene.layout
-    found = redundancy(scene, runner)
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
         "freedoms": layout.tree_freedoms - (found.closed - found.dependent) - scene.undetermined,

@@ -21,6 +21,7 @@ from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
+from heuncli.redundancy.count import redundancy
 from heuncli.results import Array, Block
 from heuncli.spec.models import Spec
 from heuncli.stages import ANEW, Stages
@@ -31,6 +32,7 @@ from heuncli.tree.prepare import PreparedScene, prepare
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
+    from heuncli.redundancy.self_stress import KnownStress
     from heuncli.study.model.rest_pose import Rest
 
 
@@ -42,7 +44,7 @@ class Setup:
     as whole stretches stand for them. reduced: what is integrated in the scene's place, and why; None where nothing is,
     or where all is solved in full. rest: how the pose was found, where that is what is asked for. step: that is given
     to a method of fixed step [s].
-    auto: the method was left to heun, which may change it on the way.
+    auto: the method was left to heun, which may change it on the way. known: the self-stresses at the start.
     """
 
     spec: Spec
@@ -56,6 +58,7 @@ class Setup:
     rest: Rest | None = None
     auto: bool = False
     step: float | None = None
+    known: KnownStress | None = None
 
     @cached_property
     def about(self) -> Array:
@@ -101,7 +104,7 @@ def set_up(
         require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
-    scene, runner = ready(prepared)
+    scene, runner = ready(prepared, stages)
     if scene.mechanism.rubbing and scene.layout.rows:
         from heuncli.redundancy.rubbing import require_certain_start  # few scenes have such friction
 
@@ -118,14 +121,15 @@ def set_up(
     if chosen is not None and auto:
         follows = determined(runner.moving) if reduce else NOT_DETERMINED
         chosen, told = FOLLOWED if follows.is_so else first_choice(runner.moving.layout, spec), follows.beside(told)
-    note = model_note(scene, runner, chosen.name if chosen else "none") | told
+    held_twice = redundancy(scene, runner, stages)
+    note = model_note(scene, runner, chosen.name if chosen else "none", held_twice) | told
     if chosen is not None:
         note["reasons"] += attitudes(chosen, runner.moving.layout)
         if auto and not chosen.determined:
             note["reasons"] += why(chosen, runner.moving.layout, spec)
     step = spec.analysis.step if chosen is not None and chosen.fixed else None
     note |= {} if step is None else {"step": step}
-    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step)
+    return Setup(spec, scene, cuts, runner, chosen, note, reduced, asked, auto=auto, step=step, known=held_twice.here)
 
 
 def require_drives(mechanism: Mechanism, t: float) -> None:
@@ -144,8 +148,10 @@ def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) ->
     scene, runner, rest = setup.scene, setup.runner, None
     if looked_for:
         scene, runner, rest = at_rest(scene, runner)
-    note = model_note(scene, runner, "rest") | reductions(left_out, scene, None)
-    return replace(setup, scene=scene, runner=runner, rest=rest, model=rested(note, rest.told if rest else ()))
+    held_twice = redundancy(scene, runner)
+    note = model_note(scene, runner, "rest", held_twice) | reductions(left_out, scene, None)
+    told = rested(note, rest.told if rest else ())
+    return replace(setup, scene=scene, runner=runner, rest=rest, model=told, known=held_twice.here)
 
 
 def with_slack_ropes(mechanism: Mechanism) -> Mechanism:

@@ -90,19 +90,22 @@ def refined(sample: NumberAt, times: Array, h: Array, error: float) -> tuple[Arr
     span = float(np.ptp(times))
     for _ in range(MOST_ROUNDS):
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * span
-        pool = pool.some(wide & (pool.promise() > tolerances.EPS * np.abs(pool.f[:, 1:3]).max(axis=1, initial=0.0)))
+        shape = pool.shape()
+        least = tolerances.EPS * np.abs(pool.f[:, 1:3]).max(axis=1, initial=0.0)
+        worth = wide & (pool.promise(shape) > least)
+        pool, shape = pool.some(worth), shape.some(worth)
         if not len(pool.target):
             return joined(more_t, more_h, complete=True)
         if probes > MOST_PROBES:
             break
-        at = pool.probe()
+        at = pool.probe(shape)
         instants = distinct(at)
         found = sample(instants)
         side = np.where(pool.target < 1, -1.0, 1.0)
         more_t.append(instants)
         more_h.append(found)
         probes += len(instants)
-        pool = hidden(pool.divided(at, side * (found[np.searchsorted(instants, at)] - error)))
+        pool = hidden(pool.divided(shape, at, side * (found[np.searchsorted(instants, at)] - error)))
     return joined(more_t, more_h, complete=False)
 
 

@@ -66,14 +66,14 @@ class Targets(NamedTuple):
 
     def enough(self, height: Array) -> Array:
         """By how much more an interval has to promise than what was found (2n,) to be worth a look, (2n,)."""
-        error, even = np.tile(GOOD_ENOUGH * self.error, 2), np.tile(self.even, 2)
-        size = np.where(np.isfinite(height), np.abs(height), 0.0)
+        error, even = GOOD_ENOUGH * self.error, self.even
+        size = np.where(np.isfinite(height), np.abs(height), 0.0).reshape(2, self.n)
         squared = error * error + 2.0 * error * np.sqrt(size)
-        return np.asarray(np.where(even, squared, error) + tolerances.SUM_ROUNDING * size)
+        return np.asarray(np.where(even, squared, error) + tolerances.SUM_ROUNDING * size).reshape(-1)
 
     def possible(self, promise: Array, target: Indices) -> Array:
         """Promises of targets, where they are possible: no square is below 0."""
-        bounded = np.tile(self.even, 2)[target] & (target < self.n)
+        bounded = self.even[target % self.n] & (target < self.n)
         return np.asarray(np.where(bounded, np.minimum(promise, 0.0), promise))
 
 
@@ -226,17 +226,19 @@ def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, fir
     """
     probes = 0
     for turn in range(MOST_ROUNDS):
-        promise = asked.possible(pool.promise(), pool.target)
+        shape = pool.shape()
+        promise = asked.possible(pool.promise(shape), pool.target)
         wide = pool.t[:, 2] - pool.t[:, 1] > tolerances.SIDE_BY_SIDE * first.span
         worth = wide & (promise > (found.height + asked.enough(found.height))[pool.target])
-        pool, promise = pool.some(worth), promise[worth]
+        if not worth.all():
+            pool, shape, promise = pool.some(worth), shape.some(worth), promise[worth]
         if not len(promise):
             return True
         if probes > MOST_PROBES:
             return False
         now = _first(promise - found.height[pool.target], pool.target, FIRST << min(turn, 12))
-        some, rest = pool.some(now), pool.some(~now)
-        at = some.probe()
+        some, shape, rest = (pool, shape, None) if now.all() else (pool.some(now), shape.some(now), pool.some(~now))
+        at = some.probe(shape)
         instants = distinct(at)
         if len(instants) > first.instants:
             at = together(at, some.t[:, 2] - some.t[:, 1])
@@ -245,7 +247,8 @@ def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, fir
         height = side * sample(instants)[np.searchsorted(instants, at), some.column]
         probes += len(instants)
         found.take(height, at, some.column, some.target)
-        pool = joined([rest, some.divided(at, height)])
+        parts = some.divided(shape, at, height)
+        pool = parts if rest is None else joined([rest, parts])
     return False
 
 
@@ -286,7 +289,10 @@ def sides_of_jumps(times: Array) -> Mask:
 
 def filled(times: Array) -> Array:
     """The instants, and more of them in stretches between two jumps that have too few to show how they bend."""
-    stretch = np.append(0, np.cumsum(sides_of_jumps(times)))
+    jumps = sides_of_jumps(times)
+    if not jumps.any() and len(times) > FEW:
+        return times
+    stretch = np.append(0, np.cumsum(jumps))
     few = (np.diff(stretch) == 0) & (np.bincount(stretch)[stretch[1:]] < FEW)
     more = times[:-1][few, None] + np.diff(times)[few, None] * (np.arange(1, FEW) / FEW)
     return np.asarray(distinct(np.concatenate([times, more.ravel()])))
@@ -294,5 +300,8 @@ def filled(times: Array) -> Array:
 
 def distinct(values: np.ndarray[Any, Any]) -> Any:
     """The different numbers among these, ascending; np.unique would import numpy.ma for it, 10 ms."""
-    ascending = np.sort(values, axis=None)
-    return ascending[np.append(True, ascending[1:] != ascending[:-1])[: len(ascending)]]
+    ascending = values.flatten()
+    ascending.sort()
+    first = np.ones(len(ascending), dtype=bool)
+    np.not_equal(ascending[1:], ascending[:-1], out=first[1:])
+    return ascending[first]

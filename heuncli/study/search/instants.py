@@ -7,6 +7,7 @@ import numpy as np
 from heuncli.integration.segments import limits_of
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
+from heuncli.shapes.by_component import rows, squares
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import distinct
 from heuncli.study.solve.history import History, resample
@@ -31,10 +32,13 @@ def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
     per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
     inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
     # a jump has a value on either side of it
-    before, after = limits_of(history.jumps)
-    grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
+    grid = inner
+    if history.jumps:
+        before, after = limits_of(history.jumps)
+        grid = np.concatenate([inner, before[before > 0.0], after[before > 0.0]])
     grid = distinct(np.concatenate([times, grid[(grid > times[0]) & (grid < times[-1])]]))
-    grid = distinct(np.concatenate([grid, *own_extremes(setup.scene.mechanism, grid)]))
+    found = own_extremes(setup.scene.mechanism, grid)
+    grid = distinct(np.concatenate([grid, *found])) if found else grid
     turns = np.ceil(turned_between(setup, history, grid) / TURNED)
     parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
     enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
@@ -61,6 +65,6 @@ def turned_between(setup: Setup, history: History, grid: Array) -> Array:
     """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
     driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
     known = resample(setup.runner, history, grid) if driven else history.recovered
-    omega = np.sqrt(np.nan_to_num(np.sum(known.bodies["omega"] ** 2, axis=2)).max(axis=1, initial=0.0))
+    omega = np.sqrt(np.nan_to_num(squares(rows(known.bodies["omega"]))).max(axis=0, initial=0.0))
     omega = np.interp(grid, known.times, omega)
     return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

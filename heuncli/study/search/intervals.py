@@ -27,6 +27,23 @@ ROUNDED_UP = 0.26  # of a bend: a quarter, and more than rounding adds to it
 ROUGH = 0.2  # of the bend: a parabola that misses a value by more has met a kink, or a grid too coarse for it
 
 
+class Shape(NamedTuple):
+    """Of intervals (m,): the bends of the two parabolas, and how each would go on from either side.
+
+    left, right: κ of those with the neighbour before and behind; where one has no number, the other's. up, down: by how
+    much each rises from b on as from a to b, and from c back as from d to c.
+    """
+
+    left: Array
+    right: Array
+    up: Array
+    down: Array
+
+    def some(self, which: Mask | Indices) -> Shape:
+        """Of the intervals that are marked."""
+        return Shape(*(x[which] for x in self))
+
+
 class Intervals(NamedTuple):
     """Intervals that may hold a target's best value.
 
@@ -46,59 +63,60 @@ class Intervals(NamedTuple):
         t, f, doubt, rough, target, column = self
         return Intervals(t[which], f[which], doubt[which], rough[which], target[which], column[which])
 
-    def bends(self) -> tuple[Array, Array]:
-        """κ of the two parabolas of each; where one has no number, the other's."""
+    def shape(self) -> Shape:
+        """How each bends and rises."""
         t, f = self.t.T, self.f.T
-        square = (t[2] - t[1]) ** 2
+        w, rise = t[1:] - t[:-1], f[1:] - f[:-1]
+        square = w[1] * w[1]
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            slope = [(f[i + 1] - f[i]) / (t[i + 1] - t[i]) for i in range(3)]
+            slope = rise / w
             left = -square * (slope[1] - slope[0]) / (t[2] - t[0])
             right = -square * (slope[2] - slope[1]) / (t[3] - t[1])
-        return completed(left, right)
+            up, down = rise[0] * (w[1] / w[0]), -rise[2] * (w[1] / w[2])
+        return Shape(*completed(left, right), up, down)
 
-    def rises(self) -> tuple[Array, Array]:
-        """By how much each rises from b on as from a to b, and from c back as from d to c."""
-        (a, b, c, d), w = self.f.T, np.diff(self.t, axis=1).T
-        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
-            return (b - a) * (w[1] / w[0]), (c - d) * (w[1] / w[2])
-
-    def promise(self) -> Array:
+    def promise(self, shape: Shape) -> Array:
         """The highest that may lie between b and c."""
-        b, c, (up, down) = self.f[:, 1], self.f[:, 2], self.rises()
-        smooth = promised(b, c, *self.bends(), self.doubt, up, down)
-        return np.asarray(np.where(self.rough, np.fmax(smooth, b + up * meeting(c - b, up, down)), smooth))
+        b, c = self.f[:, 1], self.f[:, 2]
+        smooth = promised(b, c, shape.left, shape.right, self.doubt, shape.up, shape.down)
+        if not self.rough.any():
+            return smooth
+        kink = b + shape.up * meeting(c - b, shape.up, shape.down)
+        return np.asarray(np.where(self.rough, np.fmax(smooth, kink), smooth))
 
-    def probe(self) -> Array:
+    def probe(self, shape: Shape) -> Array:
         """Where to ask: at the summit of the mean parabola.
 
         Where the two have little in common: where the slopes on either side meet, as at a kink, else in the middle.
         """
-        left, right = self.bends()
+        left, right, up, down = shape
         rise, mean, apart = self.f[:, 2] - self.f[:, 1], 0.5 * (left + right), np.abs(left - right)
-        up, down = self.rises()
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             summit = 0.5 + 0.5 * rise / np.where(mean > np.abs(rise), mean, np.maximum(left, right))
-        kink = meeting(rise, up, down)
-        kink = np.where((kink > 0.0) & (kink < 1.0), kink, 0.5)
         smooth = (apart < np.abs(mean)) & np.isfinite(summit) & ~self.rough
-        share = np.where(smooth, summit, kink)
-        share = np.clip(share, NEAREST, 1.0 - NEAREST)
+        share = summit
+        if not smooth.all():
+            kink = meeting(rise, up, down)
+            kink = np.where((kink > 0.0) & (kink < 1.0), kink, 0.5)
+            share = np.where(smooth, summit, kink)
+        share = np.minimum(np.maximum(share, NEAREST), 1.0 - NEAREST)
         return np.asarray(self.t[:, 1] + share * (self.t[:, 2] - self.t[:, 1]))
 
-    def divided(self, at: Array, height: Array) -> Intervals:
+    def divided(self, shape: Shape, at: Array, height: Array) -> Intervals:
         """The two parts of each, divided at an instant whose height was asked; what is no number has none."""
         (ta, tb, tc, td), (a, b, c, d) = self.t.T, self.f.T
         share = (at - tb) / (tc - tb)
-        expected = b + (c - b) * share + 0.5 * sum(self.bends()) * share * (1.0 - share)
+        expected = b + (c - b) * share + 0.5 * (shape.left + shape.right) * share * (1.0 - share)
         doubt = np.abs(height - expected) / (share * (1.0 - share))  # as a bend
-        rough = doubt > ROUGH * np.maximum(*map(np.abs, self.bends()))
+        rough = doubt > ROUGH * np.maximum(np.abs(shape.left), np.abs(shape.right))
         parts = [
-            Intervals(np.stack(t, 1), np.stack(f, 1), doubt * part, rough, self.target, self.column)
+            Intervals(np.array(t).T, np.array(f).T, doubt * part, rough, self.target, self.column)
             for t, f, part in (
                 ((ta, tb, at, tc), (a, b, height, c), share), ((tb, at, tc, td), (b, height, c, d), 1.0 - share),
             )
         ]  # fmt: skip
-        return joined([part.some(np.isfinite(height)) for part in parts])
+        known = np.isfinite(height)
+        return joined(parts if known.all() else [part.some(known) for part in parts])
 
 
 def joined(parts: Sequence[Intervals]) -> Intervals:
@@ -109,6 +127,8 @@ def joined(parts: Sequence[Intervals]) -> Intervals:
 def completed(left: Array, right: Array) -> tuple[Array, Array]:
     """Two bends of which one may have no number, for want of a neighbour: then it is the other; 0 where neither has."""
     known = np.isfinite(left), np.isfinite(right)
+    if known[0].all() and known[1].all():
+        return left, right
     both = np.where(known[0], left, np.where(known[1], right, 0.0)), np.where(known[1], right, 0.0)
     return both[0], np.where(known[1], both[1], both[0])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 
 import numpy as np
 
@@ -10,8 +11,9 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import inertia_loads
+from heuncli.kinetostatics.foundation import inertia_rows
 from heuncli.results import Array
+from heuncli.shapes.by_component import instants_first, largest, rows, squares
 from heuncli.study.model.setup import Setup
 
 
@@ -29,31 +31,43 @@ def rounding_of_loads(several: Recovered, force: Array, moment: Array, size: flo
 
 
 class BalanceTerms:
-    """The terms of the balances: inertia loads (c n, b, 3), weights, and the largest of all at each instant (c n,).
+    """The terms of the balances: inertia loads, weights, and the largest of all at each instant (c n,).
+
+    by_component: the inertia loads, force and moment, (b, 3, c n).
 
     force [N]; moment [N m], those of forces over the reach of the scene among them; rounding: of the loads, relative.
     """
 
     def __init__(self, setup: Setup, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
         mechanism, size = setup.scene.mechanism, setup.scene.layout.size
-        self.ma, self.spin = inertia_loads(mechanism, states)
+        ma, spin = self.by_component = inertia_rows(mechanism, states)
         self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
         of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
         applied = [load.action for load in loads]
         # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
         layout, bodies = setup.scene.layout, mechanism.bodies
-        turning = np.abs(states.alpha).max(axis=2) + np.sum(states.omega**2, axis=2)
+        turning = np.abs(states.rows_of("alpha")).max(axis=1) + squares(states.rows_of("omega"))
         arms = [b.center - layout.reference[layout.place[i]] for i, b in enumerate(bodies)]
-        offset = [b.mass * float(np.abs(arm).max()) for b, arm in zip(bodies, arms, strict=True)]
-        gyration = [float(np.trace(b.inertia)) for b in bodies]
-        forces = [self.ma, turning * offset, several.bodies["joint_force"], of_rows, *(x.force for x in applied)]
-        moments = [self.spin, turning * gyration, several.bodies["joint_moment"], *(x.moment for x in applied)]
+        offset = np.array([[b.mass * float(np.abs(arm).max())] for b, arm in zip(bodies, arms, strict=True)])
+        gyration = np.array([[float(np.trace(b.inertia))] for b in bodies])
+        joint_force, joint_moment = (rows(several.bodies[name]) for name in ("joint_force", "joint_moment"))
+        forces = [ma, turning * offset, joint_force, rows(of_rows), *(rows(x.force) for x in applied)]
+        moments = [spin, turning * gyration, joint_moment, *(rows(x.moment) for x in applied)]
         self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
         self.moment = np.maximum(_at_each(moments), size * self.force)
         self.rounding = rounding_of_loads(several, self.force, self.moment, size)
 
+    @cached_property
+    def ma(self) -> Array:
+        """m x_s.. of the bodies, (c n, b, 3) [N]."""
+        return instants_first(self.by_component[0])
+
+    @cached_property
+    def spin(self) -> Array:
+        """I sigma. + sigma x I sigma, (c n, b, 3) [N m]."""
+        return instants_first(self.by_component[1])
+
 
 def _at_each(values: Iterable[Array]) -> Array:
-    """The largest of all values at each instant, (c n,); each (c n, ...)."""
-    largest = [np.abs(x.reshape(len(x), -1)).max(axis=1, initial=0.0) for x in values]
-    return np.asarray(np.max(largest, axis=0))
+    """The largest of all values at each instant, (c n,); each (..., c n)."""
+    return np.asarray(np.max([largest(x) for x in values], axis=0))

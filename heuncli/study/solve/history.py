@@ -223,7 +223,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     errors = LoadErrors(setup, by_cause)
     errors.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
-    off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both, len(starts), layout.size)[0])
+    off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both.bodies, len(starts), layout.size)[0])
     estimate = Estimate(motion=off, **errors.estimate())
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(

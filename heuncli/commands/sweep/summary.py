@@ -1,0 +1,107 @@
+"""The table below a sweep's rows: of each measure its least and greatest value, where, and its course in letters."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.commands.sweep.columns import ParameterColumn, parameters_of
+from heuncli.commands.sweep.kept_rows import KeptRows
+from heuncli.commands.sweep.rows import SweepHead
+from heuncli.commands.sweep.shown_rows import number_text, parameter_text
+from heuncli.report.digits import largest
+from heuncli.report.plurals import count
+from heuncli.report.sparkline import histogram, sparkline
+from heuncli.report.table_units import Units
+from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.variants.plans import Plan
+
+SPARK = 40  # letters of a line
+MOST_COURSES = 12  # lines of letters of a measure that are shown without --all
+HEADING = "MEASURES  least and greatest, and the variants that have them"
+
+
+def summary(head: SweepHead, shown: KeptRows, units: Units, by: str, all_of_them: bool) -> TextTable:
+    """A line a measure; where there is more than one axis, a line for each combination of those before the last."""
+    columns = [TextColumn(one, "left") for one in ("measure", "least", "", "greatest", "", course_head(head.plan))]
+    rows: list[tuple[str, ...] | str] = []
+    notes: list[str] = []
+    for k, measure in enumerate(head.measures):
+        unit, size = units.of(measure.unit)
+        best = shown.extremes[k]
+        ends = ["", "", "", ""]
+        if best is not None:
+            ends = [text for place in (best.least, best.greatest) for text in _end(head, shown, k, place, size)]
+        letters, left_out = courses(head.plan, shown, k, by, None if all_of_them else MOST_COURSES)
+        rows.append((f"{measure.text} [{unit}]" if unit else measure.text, *ends, letters[0]))
+        rows += [("", "", "", "", "", course) for course in letters[1:]]
+        if left_out:
+            notes.append(f"{measure.text}: {count(left_out, 'line')} of letters more: --all")
+        if best is not None and best.flat:
+            notes.append(f"{measure.text}: the same in all variants, as far as their errors tell")
+    return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
+
+
+def course_head(plan: Plan) -> str:
+    """What the letters run over."""
+    if plan.draws is not None:
+        return "how often, from least to greatest"
+    if plan.together:
+        return "over the variants"
+    return f"over {plan.axes[-1].name}" if plan.axes else ""
+
+
+def _end(head: SweepHead, shown: KeptRows, k: int, place: int, size: float) -> tuple[str, str]:
+    """An extreme, and the variant that has it."""
+    values, errors = shown.gathered.values(k), shown.gathered.errors(k)
+    text = number_text(size * float(values[place]), size * float(errors[place]), size * largest(values))
+    number = int(shown.gathered.numbers[place])
+    return text, where(head.plan, parameters_of(head.plan), number)
+
+
+def where(plan: Plan, parameters: tuple[ParameterColumn, ...], number: int) -> str:
+    """A variant in words: its value if there is one parameter, else its number."""
+    if len(parameters) != 1:
+        return f"variant {number}"
+    (one,) = parameters
+    return f"{one.name} = {parameter_text(one, plan.values(number)[one.name])}{f' {one.unit}' if one.unit else ''}"
+
+
+def courses(plan: Plan, shown: KeptRows, k: int, by: str, most: int | None) -> tuple[list[str], int]:
+    """A measure in letters, over the last axis or of what is drawn, on one scale; how many lines are left out.
+
+    A line for each combination of the axes before, which stands behind it where there are several.
+    """
+    of_one = len(plan.draws.values) if plan.draws is not None else last_axis(plan)
+    numbers, values = shown.gathered.numbers, shown.gathered.values(k)
+    known = values[np.isfinite(values)]
+    limits = (float(known.min()), float(known.max())) if known.size else (0.0, 0.0)
+    best = shown.extremes[k]
+    if best is not None and best.flat:
+        limits = limits[0], limits[0]
+    present = np.unique(numbers // of_one)
+    lines = []
+    for combination in present[:most].tolist():
+        start = combination * of_one
+        begin, end = np.searchsorted(numbers, (start, start + of_one)).tolist()
+        if plan.draws is not None:
+            line = histogram(values[begin:end], limits, min(SPARK, max(8, (end - begin) // 8)), by)
+        else:
+            course = np.full(of_one, np.nan)
+            course[numbers[begin:end] - start] = values[begin:end]
+            line = sparkline(course, SPARK, limits, by)
+        lines.append(f"{line}  {combination_text(plan, start)}".rstrip() if len(present) > 1 else line)
+    return lines or [""], max(len(present) - len(lines), 0)
+
+
+def combination_text(plan: Plan, number: int) -> str:
+    """The values by which a line of letters differs from the others: `L = 0.1, case = warm`."""
+    moving = {law.name for law in plan.draws.laws} if plan.draws is not None else {plan.axes[-1].name}
+    values = plan.values(number)
+    fixed = [one for one in parameters_of(plan) if one.name not in moving]
+    texts = ((one, parameter_text(one, values[one.name])) for one in fixed)
+    return ", ".join(f"{one.name} = {text}{f' {one.unit}' if one.unit else ''}" for one, text in texts)
+
+
+def last_axis(plan: Plan) -> int:
+    """How many variants in a row differ in the last axis alone, or in all together."""
+    return plan.size if plan.together or not plan.axes else len(plan.axes[-1].texts)

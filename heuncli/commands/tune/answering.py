@@ -1,0 +1,81 @@
+"""Variants answered in this process or several, as the search takes them. Impure: processes, the clock."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+
+from heuncli.cli import alarm, jobs
+from heuncli.cli.entry import UsageError, contained
+from heuncli.commands.tune.results import Outcome, Reading
+from heuncli.commands.tune.trials import TIME_LIMIT
+from heuncli.errors import HeunError, Problem
+from heuncli.study.ask.measure import NotOneNumber
+from heuncli.variants.asking import Answer, Asker, measured
+
+NO_NUMBER = "bad-option"  # the code of a measure that is not one number
+ALMOST = 1e-9  # s: what is left of a time limit that is reached
+WORKER_DIED = "worker-died"
+
+
+class Answering:
+    """Answers some variants at once, in their order."""
+
+    def __init__(self, asker: Asker, at_once: int | None) -> None:
+        """at_once: how many processes; None: this one."""
+        self.asker, self.at_once = asker, at_once
+
+    def own(self) -> Outcome:
+        """That of the scene as it is. Raises UsageError where a measure is not one number of it."""
+        try:
+            study = self.asker.study({})
+            measures = tuple(measured(asked, study) for asked in self.asker.recipe.measures)
+        except NotOneNumber as error:
+            (problem,) = error.problems
+            raise UsageError(problem) from None
+        except HeunError as error:
+            return outcome_of(failed(error))
+        return outcome_of(Answer(measures))
+
+    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[Outcome]:
+        """The outcomes of variants, in the form of --set. Raises UsageError where a measure is not one number."""
+        at_once = 1 if self.at_once is None else jobs.how_many(self.at_once, len(several))
+        work: Callable[[Mapping[str, str]], Answer] = partial(answer_apart if at_once > 1 else answer, self.asker)
+        for found in jobs.each(work, several, at_once, died):
+            if found.code == NO_NUMBER:
+                raise UsageError(Problem(found.code, found.reason, hint="such as 'max foundation.force'"))
+            yield outcome_of(found)
+
+
+def answer(asker: Asker, values: Mapping[str, str]) -> Answer:
+    """The answer of a variant, in this process, whose time limit interrupts whatever is going on."""
+    left = alarm.remaining()
+    if left is not None and left <= ALMOST:
+        return Answer(code=TIME_LIMIT)
+    return asker.answer(values)
+
+
+def answer_apart(asker: Asker, values: Mapping[str, str]) -> Answer:
+    """The answer of a variant, in a process of its own, which has no alarm but what it sets itself."""
+    work = partial(alarm.limited, lambda: asker.answer(values), alarm.remaining())
+    try:
+        return contained(work, ("tune", asker.recipe.path, *(f"{name}={text}" for name, text in values.items())))
+    except HeunError as error:
+        return failed(error)
+
+
+def died(values: Mapping[str, str], how: str) -> Answer:
+    """What stands for a variant whose process died."""
+    return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how}")
+
+
+def failed(error: HeunError) -> Answer:
+    """The answer of a variant that could not be solved."""
+    problem = error.problems[0]
+    return Answer(code=problem.code, reason=problem.message)
+
+
+def outcome_of(found: Answer) -> Outcome:
+    """An answer as the search takes it."""
+    readings = tuple(Reading(one.value, one.error, one.at, one.word) for one in found.measures)
+    return Outcome(readings, found.code, found.reason, found.warnings)

@@ -1,0 +1,34 @@
+"""The error that is stated with one measure is that which tables show and goldens keep of the same number."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from heuncli.results_schema import REPORTS
+from heuncli.spec.load import load
+from heuncli.study.ask.measure import MeasureRequest, Peak
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from heuncli.telling.keep import keep
+from heuncli.variants.stated import error_of, unit_of
+from tests.shared.folders import ROOT, SPECS
+
+SCENES = (
+    SPECS / "double.yaml", SPECS / "slider_crank.yaml", SPECS / "table.yaml", SPECS / "crane.yaml",
+    SPECS / "cart_pole.yaml", ROOT / "heuncli" / "starters" / "truss.yaml",
+)  # fmt: skip
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("scene", SCENES, ids=lambda path: path.stem)
+def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
+    study = solve(load(str(scene)), Options())
+    numbers = keep(study, frozenset(REPORTS)).numbers
+    assert numbers
+    for path, kept in numbers.items():
+        asked = path.removesuffix(".lowest").removesuffix(".highest")
+        error = error_of(MeasureRequest("max", asked), Peak(1.0, 0.0), study)
+        assert unit_of(asked, study.spec) == kept.unit, path
+        assert math.isclose(error or 0.0, kept.error, rel_tol=1e-12), path

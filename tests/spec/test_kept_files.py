@@ -1,0 +1,98 @@
+"""Files that a spec names, read once and taken elsewhere: a variant answers there what it answers beside them."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import pytest
+
+from heuncli.cli import measure
+from heuncli.spec.named_files import FileNotKept
+from heuncli.study.model.options import Options
+from heuncli.variants.asking import Asker, Recipe
+from heuncli.variants.axes import axis_of
+from heuncli.variants.files import with_files, with_more_files
+from heuncli.variants.plans import Plan, plan_of
+
+DRIVEN = """\
+heun: 1
+title: A block on rails, driven by a table
+ground: {points: {O: [0, 0, 0]}}
+tables:
+  push: {file: a.csv, y_unit: mm, interpolation: cubic}
+bodies:
+  block: {mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {a: [0, 0, 0]}}
+joints:
+  rail: {type: slide, from: ground.O, to: block.a, axis: [1, 0, 0]}
+drives:
+  motor: {joint: rail, travel: "table(push, t)"}
+analysis: {duration: 1, samples: 3}
+expect:
+  - {of: coordinates.rail.travel, curve: seen.csv, abs: 1}
+cases:
+  other: {title: Another drive, set: {tables.push.file: b.csv}}
+"""
+MEASURES = ("final coordinates.rail.travel", "max abs joints.rail.drive")
+AXES = ("tables.push.file=a.csv,b.csv,'c d.csv',none.csv,wrong.csv,../far.csv,large.bin", "case=other")
+
+
+@pytest.fixture
+def beside(tmp_path: Path) -> Path:
+    """A folder with the spec and its files."""
+    folder = tmp_path / "specs"
+    folder.mkdir()
+    (folder / "driven.yaml").write_text(DRIVEN)
+    rows = {"a": "0,0\n0.4,3\n1,5\n", "b": "0,0\n0.5,1\n1,9\n", "c d": "t;s\n0;0\n0,7;1,5\n1;2\n", "seen": "0,0\n1,1\n"}
+    for name, text in rows.items():
+        (folder / f"{name}.csv").write_text(text)
+    (folder / "wrong.csv").write_bytes(b"0,0\n1,\xff\n")
+    (tmp_path / "far.csv").write_text(rows["b"])
+    with (folder / "large.bin").open("wb") as file:
+        file.truncate(300_000_000)
+    return folder
+
+
+def recipe_in(folder: Path) -> Recipe:
+    path = str(folder / "driven.yaml")
+    return Recipe(path, (folder / "driven.yaml").read_text(), tuple(measure.parse_all(MEASURES)), Options(), {})
+
+
+def plan(*words: str) -> Plan:
+    return plan_of([axis_of(word) for word in words or AXES])
+
+
+def test_variants_answer_elsewhere_what_they_answer_here(beside: Path) -> None:
+    recipe = recipe_in(beside)
+    here = Asker(recipe)
+    variants = [plan().values(number) for number in plan().numbers()] + [{}, {"case": "other"}]
+    asked = [here.answer(values) for values in variants]
+    assert {answer.code for answer in asked} == {"", "table-file", "too-large"}
+    far = {"tables.push.file": "../far.csv"}
+    warned = here.load(far).warnings
+    assert [problem.code for problem in warned] == ["outside-folder"]
+    sent = pickle.dumps(with_files(recipe, plan()))
+    for file in [*beside.iterdir(), beside.parent / "far.csv"]:
+        file.unlink()
+    there = Asker(pickle.loads(sent))
+    assert [there.answer(values) for values in variants] == asked
+    assert there.load(far).warnings == warned
+
+
+def test_what_was_read_is_what_counts(beside: Path) -> None:
+    sent = with_files(recipe_in(beside), plan())
+    before = Asker(sent).answer({})
+    (beside / "a.csv").write_text("0,0\n1,2\n")
+    assert Asker(sent).answer({}) == before
+    assert Asker(recipe_in(beside)).answer({}) != before
+
+
+def test_a_file_that_was_not_sent_is_asked_for_and_not_looked_for_on_a_disk(beside: Path) -> None:
+    recipe = recipe_in(beside)
+    whole = {"tables.push": "{file: b.csv, y_unit: mm}"}
+    sent = with_files(recipe, plan("tables.push.y_unit=mm,cm"))
+    with pytest.raises(FileNotKept) as missing:
+        Asker(sent).answer(whole)
+    assert missing.value.name == "b.csv"
+    more = with_more_files(sent, ["b.csv"])
+    assert Asker(more).answer(whole) == Asker(recipe).answer(whole)
