@@ -73,4 +73,4 @@ def in_bar(b: float, p: float = 0.5, d: float = 1.0, W: float = 30.0) -> float:
     x = (p * p - b * b + d * d) / (2.0 * d)
     y = math.sqrt(p * p - x * x)
     # forces along the bars balance (0, -W): their components across the other bar
-    return W * x * b / (d * y)
+    return W * abs(x) * b / (d * y)
