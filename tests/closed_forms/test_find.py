@@ -1,4 +1,4 @@
-"""`heun find` against closed forms: a tension, a bearing's load, a moment, a triangle of forces; and its runs counted."""
+"""`heun find` against closed forms: a tension, a bearing's load, a moment, a triangle of forces; its runs counted."""
 
 from __future__ import annotations
 

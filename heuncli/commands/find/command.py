@@ -13,7 +13,7 @@ from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.find.condition import Condition, condition_of, parsed
-from heuncli.commands.find.course import ROUNDING, Sample
+from heuncli.commands.find.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
 from heuncli.commands.find.request import FORMATS, FindRequest
 from heuncli.commands.find.results import CourseFindings
@@ -26,7 +26,7 @@ from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
-from heuncli.variants.once import REASONS, AnswersOnce
+from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 LEAST_SCAN = 4  # places: fewer tell of no course

@@ -17,9 +17,8 @@ import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
+from heuncli.tolerances import EPS
 
-EPS = float(np.finfo(float).eps)
-ROUNDING = 8.0 * EPS  # of the measure and the value: what some sums of a run's last step leave
 APART = 0.25  # of an interval: what stands nearer to another place tells of the noise, not of the course
 GRID = np.linspace(0.0, 1.0, 35)[1:-1]  # places in an interval, of its width
 NOISE = 8.0  # times the errors of four places at least so far apart: what their polynomials differ by for nothing

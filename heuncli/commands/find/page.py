@@ -33,7 +33,7 @@ CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "me
 
 
 class FoundPage(NamedTuple):
-    """What is told: of which scene and condition, over which interval; places of the scan and at most; in what units."""
+    """What is told: of which scene and condition, over which interval; places of the scan and at most; units."""
 
     title: str
     condition: Condition

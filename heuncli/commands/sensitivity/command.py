@@ -22,7 +22,7 @@ from heuncli.errors import Problem
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Measured, Recipe
-from heuncli.variants.once import REASONS, AnswersOnce
+from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
@@ -48,9 +48,9 @@ def main(request: SensitivityRequest) -> int:
     once = AnswersOnce(asker)
     if once.of({}).code:
         asker.study({})  # raises its own error, with its place
-    found = [findings(once, k, numbers, spreads) for k in range(len(recipe.measures))]
     texts = zip(request.measure, recipe.measures, strict=True)
     heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
+    found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
@@ -90,9 +90,11 @@ def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: Writ
     return numbers
 
 
-def findings(once: AnswersOnce, k: int, numbers: Sequence[WrittenNumber], spreads: Sequence[Spread]) -> MeasureFindings:
-    """What one measure, by its place, hangs on."""
-    ask = asking(once, k, {number.name: number for number in numbers})
+def findings(
+    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[Spread]
+) -> MeasureFindings:
+    """What one measure, by its place and its unit, hangs on."""
+    ask = asking(once, which, {number.name: number for number in numbers})
     slopes = {number.name: slope_of(ask, number) for number in numbers}
     total = summed(ask, spreads, slopes) if spreads else None
     return MeasureFindings(ask({}), slopes, total)
@@ -104,22 +106,24 @@ def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNu
 
 
 def asking(
-    once: AnswersOnce, k: int, numbers: Mapping[str, WrittenNumber]
+    once: AnswersOnce, which: tuple[int, str], numbers: Mapping[str, WrittenNumber]
 ) -> Callable[[Mapping[str, float]], NoisyValue]:
-    """A measure, by its place, at distances of numbers from their values."""
+    """A measure, by its place and its unit (empty: it is counted), at distances of numbers from their values."""
 
     def ask(distances: Mapping[str, float]) -> NoisyValue:
         values = {name: numbers[name].text(numbers[name].value + x) for name, x in distances.items()}
         answer = once.of(values)
         if answer.code:
             return NoisyValue(None, why=(answer.code, answer.reason))
-        return noisy(answer.measures[k])
+        return noisy(answer.measures[which[0]], which[1])
 
     return ask
 
 
-def noisy(found: Measured) -> NoisyValue:
-    """A measure with its error."""
+def noisy(found: Measured, unit: str) -> NoisyValue:
+    """A measure with its error, not below its rounding."""
     if found.value is None:
         return NoisyValue(None, why=(found.word, REASONS[found.word]))
-    return NoisyValue(None, why=NO_ERROR) if found.error is None else NoisyValue(found.value, found.error)
+    if not unit:
+        return NoisyValue(None, why=NO_ERROR)
+    return NoisyValue(found.value, max(found.error or 0.0, ROUNDING * abs(found.value)))
