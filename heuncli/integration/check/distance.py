@@ -30,7 +30,7 @@ def motion_error(marks: Marks, bodies: Table, count: int, size: float) -> Array:
 def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
     """Bounds of that error (n,); it is the error itself where it is largest, and where it may pass CLAIMED.
 
-    A point is no farther apart than its body's joint point, and the longest arm times what the body has turned by. Two
+    A point is no farther apart than its body's joint point, and the longest arm times what the body has turned. Two
     attitudes Q R and R an angle θ apart differ by |(Q - 1) R a| <= 2 sin(θ/2) |a|, and all nine elements' squares add up
     to 8 sin²(θ/2). That takes a tenth of a look at all points, and leaves few instants to look at these.
     """
