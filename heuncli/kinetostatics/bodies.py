@@ -67,6 +67,8 @@ class BodyStates:
 
     def point_positions(self, bodies: Sequence[int], points: Sequence[Array]) -> list[Array]:
         """World positions of a point each of bodies, as of `point_position`."""
+        if len(bodies) == 1:
+            return [self.point_position(bodies[0], points[0])]
         own = [i for i, body in enumerate(bodies) if body != GROUND]
         of, q = [bodies[i] for i in own], np.array([points[i] for i in own]).reshape(-1, 3, 1)
         moving = self.x[:, of].swapaxes(0, 1) + (self.R[:, of].swapaxes(0, 1) @ q[:, None])[..., 0]
