@@ -121,7 +121,8 @@ def search(
 
     groups: the columns that are compared with each other; by default each column is on its own. errors (n,): of each
     group's numbers, how well they are known; even (n,): whether its columns are their squares. between: whether the
-    instants between are looked at, too, for no more groups that vary than `most`, and for which sides; else the values at `times` stand.
+    instants between are looked at, too, for no more groups that vary than `most`, and for which sides; else the values
+    at `times` stand.
     """
     values = sample(times)
     members = [[column] for column in range(values.shape[1])] if groups is None else groups
