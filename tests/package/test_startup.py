@@ -99,6 +99,14 @@ def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], t
     assert more <= loaded(*words, text=text)
 
 
+def test_a_sweep_does_without_what_clusters_need() -> None:
+    words = ("sweep", "-", "bodies.bar.angular_velocity.2=1,2", "--measure", "final energy.kinetic")
+    found = loaded(*words, text=BAR)
+    assert "heuncli.commands.sweep.running" in found
+    clusters = {"distributed", "dask", "tornado", "heuncli.commands.sweep.cluster", "heuncli.variants.files"}
+    assert not found & (clusters | STRANGE)
+
+
 def test_what_is_said_to_be_left_out_exists() -> None:
     assert all(importlib.util.find_spec(name) for name in STRANGE | SHAPED | REDUNDANT | RARE)
 
