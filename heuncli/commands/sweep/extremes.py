@@ -8,7 +8,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
 
-class Extremes(NamedTuple):
+class BestAndWorst(NamedTuple):
     """The places of the least and the greatest value, and of those that may be it as well, by their errors."""
 
     least: int
@@ -22,7 +22,7 @@ class Extremes(NamedTuple):
         return self.greatest in self.least_too
 
 
-def extremes(values: Array, errors: Array) -> Extremes | None:
+def extremes(values: Array, errors: Array) -> BestAndWorst | None:
     """Of a measure, (n,) each, nan where it is not known; None where it is known of less than two variants."""
     if np.count_nonzero(np.isfinite(values)) < 2:
         return None
@@ -30,4 +30,4 @@ def extremes(values: Array, errors: Array) -> Extremes | None:
     with np.errstate(invalid="ignore"):
         low = np.flatnonzero(values - errors <= values[least] + errors[least])
         high = np.flatnonzero(values + errors >= values[greatest] - errors[greatest])
-    return Extremes(least, greatest, frozenset(low.tolist()), frozenset(high.tolist()))
+    return BestAndWorst(least, greatest, frozenset(low.tolist()), frozenset(high.tolist()))
