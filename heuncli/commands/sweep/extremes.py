@@ -9,17 +9,17 @@ from heuncli.results import Array
 
 
 class BestAndWorst(NamedTuple):
-    """The places of the least and the greatest value, and of those that may be it as well, by their errors."""
+    """The places of the least and the greatest value, and which may be it as well by their errors, (n,) of bool."""
 
     least: int
     greatest: int
-    least_too: frozenset[int]
-    greatest_too: frozenset[int]
+    least_too: Array
+    greatest_too: Array
 
     @property
     def flat(self) -> bool:
         """Whether any could be either: the measure does not vary, as far as is known."""
-        return self.greatest in self.least_too
+        return bool(self.least_too[self.greatest])
 
 
 def extremes(values: Array, errors: Array) -> BestAndWorst | None:
@@ -28,6 +28,6 @@ def extremes(values: Array, errors: Array) -> BestAndWorst | None:
         return None
     least, greatest = int(np.nanargmin(values)), int(np.nanargmax(values))
     with np.errstate(invalid="ignore"):
-        low = np.flatnonzero(values - errors <= values[least] + errors[least])
-        high = np.flatnonzero(values + errors >= values[greatest] - errors[greatest])
-    return BestAndWorst(least, greatest, frozenset(low.tolist()), frozenset(high.tolist()))
+        low = values - errors <= values[least] + errors[least]
+        high = values + errors >= values[greatest] - errors[greatest]
+    return BestAndWorst(least, greatest, low, high)

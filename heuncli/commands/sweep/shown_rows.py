@@ -111,9 +111,9 @@ def words(cells: Sequence[str]) -> list[str]:
 
 def mark(best: BestAndWorst, place: int) -> str:
     """Whether a variant is the least or the greatest, or may be."""
-    if place in best.least_too:
+    if best.least_too[place]:
         return LEAST
-    return GREATEST if place in best.greatest_too else ""
+    return GREATEST if best.greatest_too[place] else ""
 
 
 def value_text(one: Measured, size: float, scale: float) -> str:

@@ -30,7 +30,9 @@ def summary(head: SweepHead, shown: KeptRows, units: Units, by: str, all_of_them
         ends = ["", "", "", ""]
         if best is not None:
             of_both = ((best.least, best.least_too), (best.greatest, best.greatest_too))
-            ends = [text for place, too in of_both for text in _end(head, shown, k, place, size, len(too) - 1)]
+            ends = [
+                text for place, too in of_both for text in _end(head, shown, k, place, size, np.count_nonzero(too) - 1)
+            ]
         letters, left_out = courses(head.plan, shown, k, by, None if all_of_them else MOST_COURSES)
         rows.append((f"{measure.text} [{unit}]" if unit else measure.text, *ends, letters[0]))
         rows += [("", "", "", "", "", course) for course in letters[1:]]
