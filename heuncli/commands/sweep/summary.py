@@ -13,6 +13,7 @@ from heuncli.report.plurals import count
 from heuncli.report.sparkline import histogram, sparkline
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.results import Array
 from heuncli.variants.plans import Plan
 
 SPARK = 40  # letters of a line
@@ -30,9 +31,7 @@ def summary(head: SweepHead, shown: KeptRows, units: Units, by: str, all_of_them
         ends = ["", "", "", ""]
         if best is not None:
             of_both = ((best.least, best.least_too), (best.greatest, best.greatest_too))
-            ends = [
-                text for place, too in of_both for text in _end(head, shown, k, place, size, np.count_nonzero(too) - 1)
-            ]
+            ends = [text for place, too in of_both for text in _end(head, shown, k, place, too, size)]
         letters, left_out = courses(head.plan, shown, k, by, None if all_of_them else MOST_COURSES)
         rows.append((f"{measure.text} [{unit}]" if unit else measure.text, *ends, letters[0]))
         rows += [("", "", "", "", "", course) for course in letters[1:]]
@@ -55,11 +54,12 @@ def course_head(plan: Plan) -> str:
     return f"over {plan.axes[-1].name}" if plan.axes else ""
 
 
-def _end(head: SweepHead, shown: KeptRows, k: int, place: int, size: float, others: int) -> tuple[str, str]:
-    """An extreme, and the variant that has it; others: how many may have it as well."""
+def _end(head: SweepHead, shown: KeptRows, k: int, place: int, too: Array, size: float) -> tuple[str, str]:
+    """An extreme, and the variant that has it; too: which may have it as well."""
     values, errors = shown.gathered.values(k), shown.gathered.errors(k)
     (text,) = trim([number_text(size * float(values[place]), size * float(errors[place]), size * largest(values))])
     at = where(head.plan, parameters_of(head.plan), int(shown.gathered.numbers[place]))
+    others = int(np.count_nonzero(too)) - 1
     return text, f"{at} or {others} more" if others else at
 
 
