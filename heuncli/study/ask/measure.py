@@ -205,10 +205,10 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
         )
     bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
-    if how == "abs" and abs(low) > abs(high):
-        how, low = "min", abs(low)
-    result, at = (low + 0.0, bounds.low_at) if how == "min" else (high + 0.0, bounds.high_at)
-    place = bounds.places[0][0 if how == "min" else 1] if bounds.places else None
+    lower = how == "min" or (how == "abs" and abs(low) > abs(high))
+    result, at = (low, bounds.low_at) if lower else (high, bounds.high_at)
+    result = (abs(result) if how == "abs" else result) + 0.0
+    place = bounds.places[0][0 if lower else 1] if bounds.places else None
     value = float(np.sqrt(np.abs(result))) if even else result
     return Peak(value, float(at[0]), place, float(min(open_at)) if open_at else None)
 
