@@ -22,6 +22,7 @@ from heuncli.errors import Finding, HeunError, Problem
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.quantity import FIGURE
+from heuncli.spec.source import BASED
 
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 MOST_VALUES = 10_000_000  # of one axis, which are kept as numbers
@@ -135,7 +136,7 @@ def at_top_level(text: str) -> list[str]:
 def figure_of(text: str) -> Figure | None:
     """The number and the unit of a text such as `20 mm`; None where it is no such text."""
     found = QUANTITY.match(text)
-    if found is None:
+    if found is None or BASED.match(text.strip()):  # the x of 0x32 is no unit
         return None
     value = float(found[1].replace(" ", ""))
     return Figure(value, (found[2] or "").strip()) if math.isfinite(value) else None
