@@ -6,17 +6,20 @@ import math
 from collections.abc import Collection, Mapping
 from typing import Literal
 
+import numpy as np
+
 from heuncli.errors import HeunError, SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
 from heuncli.spec.named_files import KeptFile, KeptFiles
-from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, lost_from, value
+from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, Peak, lost_from, value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.variants.prepared import Variants
 from heuncli.variants.stated import error_of
 
+EXTREMES = ("max", "min", "abs")
 COUNTED = (BLOWS, EVENTS)  # of which one run has more than another
 CASE = "case"  # the name by which an axis varies the load case
 OF_WORDS = ("set-in-si",)  # warnings of how values are written, not of the scene: told once of an axis, not of variants
@@ -153,4 +156,19 @@ def measured(asked: MeasureRequest, study: Study) -> Measured:
         return Measured(None, word="beyond")
     if math.isnan(peak.value):
         return Measured(None, at=peak.at, word="unknown" if peak.at in study.unknown else "open")
+    if asked.how in EXTREMES and beside_singular(peak, study):
+        return Measured(None, at=peak.at, word="unknown")
     return Measured(peak.value, error_of(asked, peak, study), peak.at)
+
+
+def beside_singular(peak: Peak, study: Study) -> bool:
+    """Whether an extreme stands beside instants at which rounding leaves nothing known: there it may go on.
+
+    Its search leaves these instants out, with what lies between them and the next instants that it looks at.
+    """
+    if peak.at is None or not study.left_out:
+        return False
+    times = study.search_times
+    place = int(np.searchsorted(times, peak.at))
+    low, high = times[max(place - 2, 0)], times[min(place + 1, len(times) - 1)]
+    return any(low <= at <= high for at in study.left_out)

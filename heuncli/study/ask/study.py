@@ -100,6 +100,11 @@ class Study:
         """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
         return set(self.results.accuracy.get("unknown", ()))
 
+    @cached_property
+    def left_out(self) -> set[float]:
+        """The instants that searches for extremes left out, with what lies between them and their neighbours."""
+        return set()
+
     def impulses(self, setup: Setup | None = None) -> list[Block]:
         """The blocks of the blows; setup: with other cuts."""
         if self.struck is None:
@@ -198,6 +203,7 @@ class Study:
             most=extremes.MOST_COLUMNS if whole else None, sides=searched.sides,
         )  # fmt: skip
         found = sampled.placed(found)
+        self.left_out.update(sampled.unknown)
         self.later_warnings.update(dict.fromkeys(left_out(sampled.unknown)))
         if not found.complete:
             self.later_warnings[CUT_SHORT] = None
