@@ -246,4 +246,4 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
             shown += os.read(control, 4096)
         process.kill()
     os.close(control)
-    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ s to go", shown), shown
+    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ (s|min) to go", shown), shown
