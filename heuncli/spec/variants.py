@@ -3,9 +3,9 @@
 While the spec is read for the first time, it is written down what every entry, table and rule looks up (lookups.py):
 names of parameters and of tables, types of joints, blocks of the document. With other values it is read by the same
 code; an entry whose data are as they were, and for which every lookup would give what it gave, is the entry that it
-was. So are a rule's verdict and what a part of the document means. What is kept is that of the first reading alone, so that
-no variant hangs on another one. Beside it stands what follows from it and is the same whoever asks first: what is to be
-done again for a set of lookups that differ, and how a number is calculated from parameters.
+was. So are a rule's verdict and what a part of the document means. What is kept is that of the first reading alone, so
+that no variant hangs on another one. Beside it stands what follows from it and is the same whoever asks first: what is
+to be done again for a set of lookups that differ, and how a number is calculated from parameters.
 Where anything is wrong with a variant, it is read once more with nothing kept, and its errors are those.
 
 Impure: reads the spec's file and those of its tables, when it is made; a table that a variant changes is read again.
