@@ -197,10 +197,13 @@ class Study:
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
+        # of closed chains it is told, too, where numbers are open on the other side
+        one = searched.sides != extremes.BOTH and not self.setup.scene.layout.rows
+        sides = searched.sides if one else extremes.BOTH
         sampled = StudyColumns(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
-            most=extremes.MOST_COLUMNS if whole else None, sides=searched.sides,
+            most=extremes.MOST_COLUMNS if whole else None, sides=sides,
         )  # fmt: skip
         found = sampled.placed(found)
         self.left_out.update(sampled.unknown)
