@@ -102,6 +102,7 @@ def as_done(
             yield from pool.answers(stopped)
         finally:
             pool.kill()
+            pool.join()
 
 
 class _Worker(Generic[Item, Answer]):
@@ -195,6 +196,11 @@ class _Pool(Generic[Item, Answer]):
         worker.at = None
         self._employ()
         return item, answer
+
+    def join(self) -> None:
+        """Wait until all of them have ended."""
+        for worker in self.workers:
+            worker.process.join()
 
     def kill(self) -> None:
         """End all of them at once."""
