@@ -67,6 +67,8 @@ COMMANDS = (
     Command("probe", folder="probing", page="probe", phase="while the neighbourhood of the motion was looked at"),
     Command("lagrange", page="lagrange", phase="while the equations were made"),
     Command("sweep", page="variants"),
+    Command("find", page="variants"),
+    Command("sensitivity", page="variants"),
     Command("tune", page="variants", grace=0.8, phase="while variants were tried"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),

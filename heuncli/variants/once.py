@@ -3,8 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 
+from heuncli.tolerances import EPS
 from heuncli.variants.asking import Answer, Asker
+
+ROUNDING = 8.0 * EPS  # of a measure: what some sums of a run's last step leave where it states no more
+# why there is no measure, by the word that stands for it
+REASONS: Mapping[str, str] = MappingProxyType(
+    {
+        "open": "open: the laws of rigid bodies do not give it (redundant supports)",
+        "unknown": "not known: beside a singular pose",
+        "beyond": "beyond the run's horizon nothing is claimed",
+    }
+)
 
 
 class AnswersOnce:

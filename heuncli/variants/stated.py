@@ -11,6 +11,7 @@ from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
 from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
+from heuncli.run_places import words_of
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
@@ -21,7 +22,7 @@ SI = Units({})
 
 def unit_of(path: str, spec: Spec) -> str:
     """The SI unit of what a path leads to; empty where it has none, or that is not known before the run."""
-    words = path.split(".")
+    words = words_of(path)
     entry, rest = entry_at(words, entries_of(spec))
     keys = [*entry, *rest] if entry is not None else words
     while keys and quantity(keys) is None:  # what stands behind the quantity names one of its numbers: .x, .0.x

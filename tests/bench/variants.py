@@ -9,13 +9,14 @@ from typing import Any, NamedTuple
 
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
+from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.variants.prepared import Variants
 from tests.shared.folders import ROOT, SPECS
 
 STARTERS = ROOT / "heuncli" / "starters"
-REPEATS = 31
+REPEATS, MEASURES = 31, 200
 
 
 class Case(NamedTuple):
@@ -38,9 +39,16 @@ CASES = (
     Case(STARTERS / "truss.yaml", "a", 2.0, "lengths of a loop"),
 )
 
+MEASURED = (
+    (CASES[0], MeasureRequest("max", "joints.pivot.force")),
+    (CASES[2], MeasureRequest("max", "joints.main.force")),
+    (CASES[5], MeasureRequest("max", "joints.left.force")),
+    (CASES[6], MeasureRequest("max", "joints.low.force")),
+)
+
 
 def variants() -> None:
-    """Print it, of all results and of one joint's loads alone."""
+    """Print it, of all results and of one joint's loads alone, and of one measure."""
     print(f"{'':28s}{'all results [ms]':>26s}{'one joint [ms]':>26s}")
     print(f"{'':28s}{'fresh':>10s}{'door':>8s}{'read':>8s}{'fresh':>10s}{'door':>8s}{'read':>8s}")
     for case in CASES:
@@ -49,6 +57,23 @@ def variants() -> None:
         figures = [ms for options in (Options(wanted=frozenset(REPORTS)), one) for ms in costs(case, options)]
         columns = "".join(f"{ms:{10 if k % 3 == 0 else 8}.2f}" for k, ms in enumerate(figures))
         print(f"{case.path.stem + ' ' + case.what:28s}{columns}")
+    print(f"\n{'one measure of each, searched between the samples':58s}{'median':>8s}{'mean':>8s} [ms]")
+    for case, asked in MEASURED:
+        took = of_measure(case, asked)
+        title = f"{case.path.stem} {case.what}: {asked.how} {asked.path}"
+        print(f"{title:58s}{statistics.median(took):8.2f}{statistics.fmean(took):8.2f}")
+
+
+def of_measure(case: Case, asked: MeasureRequest) -> list[float]:
+    """Processor time of each of some variants with one measure, as `heun run --set ... --measure` has it [ms]."""
+    prepared = Variants(case.path, measures=[asked.path])
+    found = []
+    for k in range(MEASURES):
+        values = {case.key: repr(case.value * (1.0 + 0.2 * k / MEASURES))}
+        begun = time.process_time()
+        value(asked, prepared.solve(values))
+        found.append(1e3 * (time.process_time() - begun))
+    return found
 
 
 def costs(case: Case, options: Options) -> tuple[float, float, float]:

@@ -13,7 +13,7 @@ WEIGH = Addition(
             Edit('    Command("explain"),\n', '    Command("explain"),\n    Command("weigh"),\n'),
         ),
         "heuncli/cli/help.txt": (
-            Edit("  schema    Print", "  weigh     The mass of all bodies together.\n  schema    Print"),
+            Edit("  schema       Print", "  weigh        The mass of all bodies together.\n  schema       Print"),
         ),
     },
     {

@@ -20,7 +20,9 @@ from heuncli.cli.registry import COMMANDS, Command
 PACKAGE = Path(heuncli.__file__).parent
 LINES = {  # of others: the spec
     "methods": (), "explain": (), "schema": (), "new": (),
-    "diff": ("-", "nosuch.json"), "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
+    "diff": ("-", "nosuch.json"), "find": ("-", "bodies.bar.mass=1:2kg", "max joints.pivot.force = 15 N"),
+    "sensitivity": ("-", "bodies.bar.mass", "--measure", "max joints.pivot.force"),
+    "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
 }  # fmt: skip
 SWINGING = """\
 heun: 1

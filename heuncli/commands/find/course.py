@@ -17,11 +17,11 @@ import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
+from heuncli.tolerances import EPS
 
-EPS = float(np.finfo(float).eps)
-ROUNDING = 8.0 * EPS  # of the measure and the value: what some sums of a run's last step leave
 APART = 0.25  # of an interval: what stands nearer to another place tells of the noise, not of the course
 GRID = np.linspace(0.0, 1.0, 35)[1:-1]  # places in an interval, of its width
+NOISE = 8.0  # times the errors of four places at least so far apart: what their polynomials differ by for nothing
 UNSEEN = 1e-3  # of the range of the four: what a course may do between places of the scan beside a cubic
 UNEVEN = 0.25  # of the spacing: by so much places of the scan are shifted at most, so that no wave hides in their beat
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
@@ -49,11 +49,12 @@ class Sample(NamedTuple):
 
 
 class Between(NamedTuple):
-    """What is expected at places between two neighbours: g (n,), and by how much it may be off (n,)."""
+    """What is expected at places between two neighbours: g (n,), by how much it may be off (n,), and the noise."""
 
     places: Array
     gaps: Array
     off: Array
+    noise: float
 
 
 class SpentError(Exception):
@@ -96,13 +97,13 @@ class Course:
         return found
 
     def look(self, x: float) -> Sample:
-        """What is known at a place between two neighbours, and how far it is from what was expected there."""
+        """What is known at a place between two neighbours of a stretch; how far off it was expected is remembered."""
         i = bisect_left(self.samples, x, key=lambda sample: sample.x) - 1
-        expected = self.between(i) if self.samples[i].gap is not None and self.samples[i + 1].gap is not None else None
+        expected = self.between(i, x)
         found = self.at(x)
-        if expected is not None and found.gap is not None:
-            gap, off = (float(np.interp(x, expected.places, values)) for values in (expected.gaps, expected.off))
-            missed = abs(found.gap - gap) - found.error
+        if found.gap is not None:
+            gap, off = float(expected.gaps[0]), float(expected.off[0])
+            missed = abs(found.gap - gap) - found.error - expected.noise
             if missed > off:
                 self.distrust = min(2.0 * self.distrust * (missed / off if off else MOST_DISTRUST), MOST_DISTRUST)
         return found
@@ -123,28 +124,29 @@ class Course:
         known = [sample.gap for sample in self.samples if sample.gap is not None]
         return max(known) - min(known) if known else 0.0
 
-    def between(self, i: int) -> Between:
-        """What is expected between a sample and the next, of one stretch."""
+    def between(self, i: int, place: float | None = None) -> Between:
+        """What is expected between a sample and the next, of one stretch; place: there alone, else at GRID and more."""
         one, other = self.samples[i], self.samples[i + 1]
         left, right = self.beside(i, -1), self.beside(i, 1)
         whole = [*reversed(left[: 1 if right else 2]), one, other, *right[: 1 if left else 2]]
-        x = one.x + GRID * (other.x - one.x)
-        if left and right:
+        x = one.x + GRID * (other.x - one.x) if place is None else np.array([place])
+        if left and right and place is None:
             x = np.sort(np.append(x, meeting(left[0], one, other, right[0])))
         expected = polynomial(whole, x)
+        noise = NOISE * max(sample.error for sample in whole)
         if len(whole) == 2:
-            return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))))
+            return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))), noise)
         parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
         others = [polynomial(part, x) for part in parts]
         if left and right:
             others.append(corner([left[0], one], [other, right[0]], x, expected))
-        off = np.max([np.abs(each - expected) for each in others], axis=0)
+        off = np.maximum(np.max([np.abs(each - expected) for each in others], axis=0) - noise, 0.0)
         known = [_gap(sample) for sample in whole]
         steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
-        return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps))
+        return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
 
     def beside(self, i: int, way: int) -> list[Sample]:
-        """Up to two samples of the stretch on one side of a sample and its next, far enough apart; the nearest first."""
+        """Up to two samples of the stretch before a sample (way -1) or behind its next (1); the nearest first."""
         width = self.samples[i + 1].x - self.samples[i].x
         found: list[Sample] = []
         k = i if way < 0 else i + 1
@@ -166,7 +168,7 @@ def uneven(low: float, high: float, count: int) -> list[float]:
 
 
 def meeting(first: Sample, one: Sample, other: Sample, last: Sample) -> float:
-    """Where the line through two samples meets that through two others; within the ends between which it is looked for."""
+    """Where the line through two samples meets that through two others, between the two in the middle."""
     before, after = ((_gap(b) - _gap(a)) / (b.x - a.x) for a, b in ((first, one), (other, last)))
     if before == after:
         return 0.5 * (one.x + other.x)
@@ -216,6 +218,6 @@ def _newton(samples: list[Sample]) -> tuple[list[float], list[float]]:
     row = [_gap(sample) for sample in samples]
     heads = [row[0]]
     for order in range(1, len(nodes)):
-        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(zip(row, row[1:], strict=False))]
+        row = [(b - a) / (nodes[k + order] - nodes[k]) for k, (a, b) in enumerate(pairwise(row))]
         heads.append(row[0])
     return nodes, heads

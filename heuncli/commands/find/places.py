@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from itertools import groupby
 
 from heuncli.commands.find.course import APART, Course, Sample, slope
-from heuncli.commands.find.results import Crossing, CourseJump, Met, MetEdge, Touch, UnsolvedStretch
+from heuncli.commands.find.results import CourseJump, Crossing, Met, MetEdge, Touch, UnsolvedStretch
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
 SURE = 0.5  # of a slope: what it may be off by
@@ -64,7 +64,9 @@ def reach(course: Course, group: SideGroup, best: Sample) -> tuple[float, bool]:
     """How far the true place may be from a sample, and whether the slope there is too small to tell."""
     size = max(sample.error for sample in group) + _size(best)
     outer = [neighbours(course, group, way, 0.0)[:1] for way in (-1, 1)]
-    limit = max(abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True))
+    limit = max(
+        abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True)
+    )
     found = slope_at(course, group, best, size)
     if found is None:
         return limit, True
@@ -81,7 +83,7 @@ def slope_at(course: Course, group: SideGroup, best: Sample, size: float) -> tup
     whole = [*reversed(left), best, *right]
     if len(whole) < 3:
         return None
-    # the parabola through the nearest, and the cubics with one more: what they differ by is what the slope may be off by
+    # the parabola through the nearest, and the cubics with one more: by what they differ the slope may be off
     near = [*left[: 1 if right else 2], *right[: 1 if left else 2], best]
     wider = [sorted({*near, more}) for more in whole if more not in near]
     slopes = [slope(sorted(each), best.x) for each in (near, *wider)]

@@ -13,8 +13,8 @@ EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved"]
 class Crossing(NamedTuple):
     """Where the measure passes its value, within an error; sample: the variant there.
 
-    way: 1 it rises through it, -1 it falls; 0: at an end of what is known, where only one side is; flat: its slope there
-    is below what its error makes of it, and the error of the place is that of the neighbours that are told from it.
+    way: 1 it rises through it, -1 it falls; 0: at an end of what is known, where only one side is; flat: its slope is
+    below what its error makes of it there, and the error of the place is that of the neighbours that are told from it.
     """
 
     sample: Sample

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.commands.find.course import Between, Course, Sample, polynomial
+from heuncli.commands.find.course import NOISE, Between, Course, Sample, polynomial
 
 INWARD = 0.1  # of an interval: a place nearer to its end than that would tell little
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: how well it is told where variants begin to fail
@@ -53,7 +53,9 @@ def crossed(course: Course) -> Iterator[int]:
 def widest(course: Course, given_up: set[tuple[float, float]]) -> int | None:
     """The widest two neighbours between which it is not certain what happens; None: there are none."""
     found = [
-        (other.x - one.x, -i) for i, one, other in course.pairs() if (one.x, other.x) not in given_up and unsure(course, i)
+        (other.x - one.x, -i)
+        for i, one, other in course.pairs()
+        if (one.x, other.x) not in given_up and unsure(course, i)
     ]
     return -max(found)[1] if found else None
 
@@ -64,23 +66,20 @@ def unsure(course: Course, i: int) -> bool:
     width = other.x - one.x
     if one.gap is None or other.gap is None:
         return (one.gap is None) != (other.gap is None) and width > END_OF_SOLVED * course.spacing
-    if course.parted(i) or width <= (END_OF_SOLVED * course.spacing if beside_jump(course, i) else 2.0 * course.finest):
+    if course.parted(i) or width <= 2.0 * course.finest or near_jump(course, one, other):
         return False
     expected = course.between(i)
-    side = one.side or other.side
+    side, error = one.side or other.side, max(one.error, other.error)
     if not side:  # both meet it: does all between them?
-        return bool((np.abs(expected.gaps) + expected.off > max(one.error, other.error)).any())
+        return bool((np.abs(expected.gaps) + expected.off > NOISE * error).any())
     nearest = side * expected.gaps - expected.off
-    floor = max(one.error, other.error) if one.side == other.side else 0.0
-    return bool((nearest <= floor).any())
+    return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
 
 
-def beside_jump(course: Course, i: int) -> bool:
-    """Whether the course jumps at either end of two neighbours: towards a pole it is never certain."""
-    samples = course.samples
-    before, after = samples[i - 1] if i else None, samples[i + 2] if i + 2 < len(samples) else None
-    at_low = before is not None and (before.x, samples[i].x) in course.jumps
-    return at_low or (after is not None and (samples[i + 1].x, after.x) in course.jumps)
+def near_jump(course: Course, one: Sample, other: Sample) -> bool:
+    """Whether the course jumps right beside two neighbours: towards a pole it is never certain."""
+    margin = END_OF_SOLVED * course.spacing
+    return any(low - margin <= one.x and other.x <= high + margin for low, high in course.jumps)
 
 
 def place_between(one: Sample, other: Sample, expected: Between) -> float:
@@ -98,16 +97,31 @@ def close_in(course: Course, i: int) -> None:
     By Brent's rule: the root of the course as it is expected, and the middle wherever that has gained too little.
     """
     one, other = course.samples[i], course.samples[i + 1]
-    trusted = True
+    failed = 0
     while other.x - one.x > course.finest:
-        x = root(course, one, other) if trusted else 0.5 * (one.x + other.x)
+        x = (
+            0.5 * (one.x + other.x)
+            if failed > 1
+            else beyond(course, one, other)
+            if failed
+            else root(course, one, other)
+        )
         best = min(abs(one.gap or 0.0), abs(other.gap or 0.0))
         found = course.look(x)
         if found.gap is None or found.side == 0:
             return
-        trusted = abs(found.gap) < LESS * best
+        failed = 0 if abs(found.gap) < LESS * best else failed + 1
         one, other = (found, other) if found.side == one.side else (one, found)
     (course.steep if is_steep(course, one, other) else course.jumps).add((one.x, other.x))
+
+
+def beyond(course: Course, one: Sample, other: Sample) -> float:
+    """Just beyond the root, where g is hardly more than its error on this side of it; else the middle."""
+    near, far = sorted((one, other), key=lambda sample: abs(sample.gap or 0.0))
+    size, noise = abs(near.gap or 0.0), NOISE * max(near.error, far.error)
+    share = (size + noise) / abs((far.gap or 0.0) - (near.gap or 0.0)) if size <= noise else 0.5
+    way = max(min(share, 0.5) * abs(far.x - near.x), course.finest)
+    return near.x + way if far is other else near.x - way
 
 
 def is_steep(course: Course, one: Sample, other: Sample) -> bool:

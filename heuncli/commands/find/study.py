@@ -3,25 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import Literal
 
 from heuncli.commands.find.course import Course, Sample, SpentError
 from heuncli.commands.find.places import doubtful, meetings, met, unsolved
 from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, Touch
 from heuncli.commands.find.search import refine_extreme, search
-from heuncli.named_tuples import NamedTuple
 
 HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
 
 
-class Wanted(NamedTuple):
-    """Which places are looked for: on which side of the value (1 above, -1 below; 0: at it), and whether at it, too."""
-
-    side: int
-    equal: bool
+Relation = Literal["=", "<", "<=", ">", ">="]
+SIDES: dict[Relation, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
 
 
 def look(
-    ask: Callable[[float], Sample], low: float, high: float, wanted: Wanted, *, count: int, most: int
+    ask: Callable[[float], Sample], low: float, high: float, relation: Relation, *, count: int, most: int
 ) -> CourseFindings:
     """What is found between low and high; count: places of the scan, most: that may be asked in all."""
     course = Course(ask, low, high, count, most)
@@ -44,7 +41,7 @@ def look(
         touches=tuple(each for each in found if isinstance(each, Touch)),
         jumps=tuple(each for each in found if isinstance(each, CourseJump)),
         unsolved=tuple(unsolved(course)),
-        met=tuple(met(course, wanted.side, equal=wanted.equal)) if wanted.side else (),
+        met=tuple(met(course, SIDES[relation], equal="=" in relation)) if SIDES[relation] else (),
         least=min(known, key=lambda sample: sample.gap or 0.0, default=None),
         greatest=max(known, key=lambda sample: sample.gap or 0.0, default=None),
         refined=refined,

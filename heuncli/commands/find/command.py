@@ -1,0 +1,125 @@
+"""`heun find`: where a measure meets a value, over an interval of a parameter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from heuncli.cli import measure
+from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit
+from heuncli.cli.solving import overrides, tolerance
+from heuncli.cli.target import format_of
+from heuncli.cli.units import say_what_stays, units
+from heuncli.cli.variant_warnings import warn_of_variants
+from heuncli.commands.find.condition import Condition, condition_of, parsed
+from heuncli.commands.find.course import Sample
+from heuncli.commands.find.page import FORMS, FoundPage
+from heuncli.commands.find.request import FORMATS, FindRequest
+from heuncli.commands.find.results import CourseFindings
+from heuncli.commands.find.study import SIDES, look
+from heuncli.errors import Problem, SolveError, SpecError
+from heuncli.expressions.units import parse_unit
+from heuncli.report.table_units import Units
+from heuncli.spec.models import Spec
+from heuncli.spec.source import text_in
+from heuncli.study.model.options import Options
+from heuncli.variants.asking import Asker, Recipe
+from heuncli.variants.axes import Interval, interval_of
+from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
+
+ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+LEAST_SCAN = 4  # places: fewer tell of no course
+MOST_SCAN = 100_000
+
+
+def main(request: FindRequest) -> int:
+    """Run the command; returns the exit code."""
+    require_other_file(request.output, [request.spec])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    interval, words = interval_of(request.unknown), parsed(request.condition)
+    require_counts(request)
+    shown = units(request.units)
+    options = Options(tolerance=tolerance(request.tolerance))
+    given = overrides(request.set)
+    asker = Asker(Recipe(request.spec, text_in(request.spec), (words.asked,), options, given, request.case))
+    measure.check([words.asked], asker.spec)
+    require_other_file(request.output, [request.spec])
+    condition = condition_of(words, at_ends(asker, interval))
+    once = AnswersOnce(asker)
+    found = look(
+        asking(once, interval, condition), interval.low, interval.high, condition.relation,
+        count=request.scan, most=request.evaluations,
+    )  # fmt: skip
+    require_some(found)
+    own = shown if request.units else in_unit(shown, condition)
+    page = FoundPage(asker.spec.title, condition, interval, found, request.scan, request.evaluations, own)
+    emit(FORMS[form](page), request.output)
+    say_what_stays(request.units, form, request.quiet)
+    warn_of_variants(asker.spec, once, request.quiet)
+    return int(request.strict and (not is_met(found, condition) or bool(found.unsolved)))
+
+
+def require_counts(request: FindRequest) -> None:
+    """Raise UsageError where so few places, or so many, are no scan."""
+    if not LEAST_SCAN <= request.scan <= MOST_SCAN:
+        message = f"--scan {request.scan}: accepted: {LEAST_SCAN} to {MOST_SCAN:,}"
+        raise UsageError(Problem("bad-option", message, hint="such as --scan 25"))
+    if request.evaluations < request.scan:
+        message = f"--evaluations {request.evaluations}: fewer than the {request.scan} of the scan"
+        raise UsageError(Problem("bad-option", message, hint="such as --evaluations 300"))
+
+
+def at_ends(asker: Asker, interval: Interval) -> list[Spec]:
+    """The scenes at the ends of the interval and in its middle, those that are scenes. Raises SpecError if none is."""
+    specs: list[Spec] = []
+    errors: list[SpecError] = []
+    for x in (interval.low, interval.high, 0.5 * (interval.low + interval.high)):
+        try:
+            specs.append(asker.load({interval.name: interval.text(x)}))
+        except SpecError as error:
+            errors.append(error)
+    if not specs:
+        raise errors[0]
+    return specs
+
+
+def asking(once: AnswersOnce, interval: Interval, condition: Condition) -> Callable[[float], Sample]:
+    """What is known of the measure at a value of the unknown."""
+
+    def ask(x: float) -> Sample:
+        answer = once.of({interval.name: interval.text(x)})
+        if answer.code:
+            return Sample(x, None, why=(answer.code, answer.reason))
+        (found,) = answer.measures
+        if found.value is None:
+            return Sample(x, None, why=(found.word, REASONS[found.word]))
+        rounding = ROUNDING * (abs(found.value) + abs(condition.value))
+        return Sample(x, found.value - condition.value, max(found.error or 0.0, rounding))
+
+    return ask
+
+
+def require_some(found: CourseFindings) -> None:
+    """Raise SolveError where no variant has the measure."""
+    if found.least is None:
+        stretch = found.unsolved[0]
+        message = f"the measure is known in none of the {len(found.samples)} variants: {stretch.reason}"
+        raise SolveError(
+            Problem(stretch.code, message, hint="another interval; heun run --set tells more of one variant")
+        )
+
+
+def in_unit(shown: Units, condition: Condition) -> Units:
+    """Units in which the measure is told: that in which its value was given."""
+    if not condition.own or not condition.unit:
+        return shown
+    size, of_si = parse_unit(condition.own)[0], parse_unit(condition.unit)[0] if condition.unit != "1" else 1.0
+    return Units({**shown.shown, condition.unit: (condition.own, of_si / size)})
+
+
+def is_met(found: CourseFindings, condition: Condition) -> bool:
+    """Whether the condition is met anywhere."""
+    if SIDES[condition.relation]:
+        return bool(found.met) or ("=" in condition.relation and bool(found.crossings or found.touches))
+    return bool(found.crossings or found.touches)

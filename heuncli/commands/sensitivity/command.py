@@ -1,0 +1,129 @@
+"""`heun sensitivity`: what measures hang on, and what tolerances make of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from heuncli.cli import measure
+from heuncli.cli.entry import UsageError
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit
+from heuncli.cli.solving import overrides, tolerance
+from heuncli.cli.target import format_of
+from heuncli.cli.units import say_what_stays, units
+from heuncli.cli.variant_warnings import warn_of_variants
+from heuncli.commands.sensitivity.derivative import derivative
+from heuncli.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
+from heuncli.commands.sensitivity.request import FORMATS, SensitivityRequest
+from heuncli.commands.sensitivity.results import Derivative, NoisyValue
+from heuncli.commands.sensitivity.spread import Spread, summed
+from heuncli.commands.sensitivity.spread_words import spreads_of
+from heuncli.errors import Problem
+from heuncli.spec.source import text_in
+from heuncli.study.model.options import Options
+from heuncli.variants.asking import Asker, Measured, Recipe
+from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
+from heuncli.variants.stated import unit_of
+from heuncli.variants.written import WrittenNumber, WrittenNumbers
+
+ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
+
+
+def main(request: SensitivityRequest) -> int:
+    """Run the command; returns the exit code."""
+    path, names = spec_and_names(request.words)
+    require_other_file(request.output, [path])
+    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    shown = units(request.units)
+    asker = Asker(recipe_of(request, path))
+    recipe, spec = asker.recipe, asker.spec
+    measure.check(recipe.measures, spec)
+    require_other_file(request.output, [path])
+    written = WrittenNumbers(recipe, spec)
+    spreads = spreads_of(request.spread, written) if request.spread is not None else []
+    numbers = asked_numbers(names, spreads, written)
+    for number in numbers:
+        asker.load({number.name: number.text(number.value)})  # a value of another dimension, or none that may be set
+    once = AnswersOnce(asker)
+    if once.of({}).code:
+        asker.study({})  # raises its own error, with its place
+    texts = zip(request.measure, recipe.measures, strict=True)
+    heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
+    found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
+    page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
+    emit(FORMS[form](page), request.output)
+    say_what_stays(request.units, form, request.quiet)
+    warn_of_variants(spec, once, request.quiet)
+    return int(request.strict and any(one.kind == "refused" for each in found for one in each.slopes.values()))
+
+
+def spec_and_names(words: Sequence[str]) -> tuple[str, list[str]]:
+    """The spec's file, and what its measures may hang on. Raises UsageError."""
+    if not words:
+        hint = "heun sensitivity SPEC [NAME...] --measure WHAT"
+        raise UsageError(Problem("bad-option", "sensitivity: no spec is named", hint=hint))
+    for word in words[1:]:
+        if "=" in word:
+            hint = f"the name alone; --set {word} sets it"
+            raise UsageError(Problem("bad-option", f"sensitivity: {word}: expected a parameter", hint=hint))
+    return words[0], list(dict.fromkeys(words[1:]))
+
+
+def recipe_of(request: SensitivityRequest, path: str) -> Recipe:
+    """What every variant is made of. Raises UsageError, SpecError."""
+    if not request.measure:
+        hint = "such as --measure 'max abs joints.main.force'"
+        raise UsageError(Problem("bad-option", "sensitivity: nothing is measured", hint=hint))
+    options = Options(tolerance=tolerance(request.tolerance))
+    measures = tuple(measure.parse_all(request.measure))
+    return Recipe(path, text_in(path), measures, options, overrides(request.set), request.case)
+
+
+def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: WrittenNumbers) -> list[WrittenNumber]:
+    """The numbers that are named, and those with a spread; where there are none, all parameters."""
+    found = {name: written.named(name) for name in names} | {each.number.name: each.number for each in spreads}
+    numbers = [*found.values()] or list(written.all())
+    if not numbers:
+        message = "sensitivity: the spec has no parameters that are numbers"
+        raise UsageError(Problem("bad-option", message, hint="name a dotted key, such as bodies.crank.mass"))
+    return numbers
+
+
+def findings(
+    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[Spread]
+) -> MeasureFindings:
+    """What one measure, by its place and its unit, hangs on."""
+    ask = asking(once, which, {number.name: number for number in numbers})
+    slopes = {number.name: slope_of(ask, number) for number in numbers}
+    total = summed(ask, spreads, slopes) if spreads else None
+    return MeasureFindings(ask({}), slopes, total)
+
+
+def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> Derivative:
+    """The derivative by one number; one that is 0 is taken to matter over its unit."""
+    return derivative(lambda x: ask({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
+
+
+def asking(
+    once: AnswersOnce, which: tuple[int, str], numbers: Mapping[str, WrittenNumber]
+) -> Callable[[Mapping[str, float]], NoisyValue]:
+    """A measure, by its place and its unit (empty: it is counted), at distances of numbers from their values."""
+
+    def ask(distances: Mapping[str, float]) -> NoisyValue:
+        values = {name: numbers[name].text(numbers[name].value + x) for name, x in distances.items()}
+        answer = once.of(values)
+        if answer.code:
+            return NoisyValue(None, why=(answer.code, answer.reason))
+        return noisy(answer.measures[which[0]], which[1])
+
+    return ask
+
+
+def noisy(found: Measured, unit: str) -> NoisyValue:
+    """A measure with its error, not below its rounding."""
+    if found.value is None:
+        return NoisyValue(None, why=(found.word, REASONS[found.word]))
+    if not unit:
+        return NoisyValue(None, why=NO_ERROR)
+    return NoisyValue(found.value, max(found.error or 0.0, ROUNDING * abs(found.value)))
