@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.cli import measure
+from heuncli.cli import jobs, measure, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
@@ -25,6 +25,7 @@ from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
 from heuncli.errors import Problem, SpecError
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
+from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
@@ -88,6 +89,7 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
     if request.jobs is not None and request.dask is not None:
         hint = "leave --jobs out: on a cluster as many work as there are workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask do not go together", hint=hint))
+    room, each = memory.room("table")
     options = Options(
         tolerance=tolerance(request.tolerance),
         method=request.method,
@@ -95,6 +97,7 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
         least_norm=request.least_norm,
         reduce=not request.no_reduce,
         time_limit=request.time_limit_each,
+        room=Room(room / jobs.most(request.jobs), each) if request.dask is None else None,
     )
     measures = tuple(measure.parse_all(request.measure))
     return Recipe(path, text_in(path), measures, options, overrides(request.set))
