@@ -17,7 +17,8 @@ from heuncli.commands.find.course import NOISE, Between, Course, Sample, polynom
 INWARD = 0.1  # of an interval: a place nearer to its end than that would tell little
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: how well it is told where variants begin to fail
 LESS = 0.25  # of the gap that is left: an interpolation that gains less than that is followed by a halving
-EXTREME = 1e-6  # of the range: how well an extreme is told
+EXTREME = 1e-5  # of the range: how well an extreme is told
+NEAR_ENDS = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 1003)[1:-1])  # places in an interval, close by its ends
 MOST_STEPS = 12  # towards one extreme
 STEEP = 10.0  # times what the slope outside leads to expect: more than that across the narrowest bracket is a jump
 
@@ -166,7 +167,7 @@ def stretch_of(course: Course, one: Sample) -> list[Sample]:
 
 
 def refine_extreme(course: Course, way: int) -> None:
-    """Ask where the least (way -1) or the greatest (1) of the course is expected, until it is where it was expected."""
+    """Ask where the least (way -1) or the greatest (1) of the course may be, until no more is to be expected."""
     for _ in range(MOST_STEPS):
         known = [sample for sample in course.samples if sample.gap is not None]
         best = max(known, key=lambda sample: way * (sample.gap or 0.0))
@@ -184,14 +185,9 @@ def beside(course: Course, best: Sample) -> Iterator[int]:
 
 
 def expected_gain(course: Course, i: int, best: Sample, way: int) -> tuple[float, float]:
-    """By how much g is expected to pass its best between two neighbours, and where."""
-    expected = course.between(i)
-    x, gaps = expected.places, way * expected.gaps
-    k = int(np.argmax(gaps))
-    place = float(x[k])
-    if 0 < k < len(x) - 1:  # the vertex of the parabola through the three
-        rise, fall = ((gaps[k + 1 - j] - gaps[k - j]) / max(x[k + 1 - j] - x[k - j], course.finest) for j in (0, 1))
-        bend = rise - fall
-        shift = -0.25 * (rise + fall) * (x[k + 1] - x[k - 1]) / bend if bend else 0.0
-        place = float(min(max(place + shift, x[k - 1]), x[k + 1]))
-    return float(gaps[k]) - way * (best.gap or 0.0), place
+    """By how much g may pass its best between two neighbours at most, and where."""
+    one, other = course.samples[i], course.samples[i + 1]
+    expected = course.between(i, one.x + NEAR_ENDS * (other.x - one.x))
+    most = way * expected.gaps + expected.off
+    k = int(np.argmax(most))
+    return float(most[k] - way * (best.gap or 0.0)), float(expected.places[k])
