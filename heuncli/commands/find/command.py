@@ -29,8 +29,9 @@ from heuncli.variants.axes import Interval, interval_of
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+SCAN, MOST = 7, 300  # variants of the scan, and in all, where it is not said
 LEAST_SCAN = 4  # places: fewer tell of no course
-MOST_SCAN = 100_000
+MOST_SCAN = 10_000
 
 
 def main(request: FindRequest) -> int:
@@ -38,7 +39,7 @@ def main(request: FindRequest) -> int:
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
     interval, words = interval_of(request.unknown), parsed(request.condition)
-    require_counts(request)
+    scan, most = counts(request)
     shown = units(request.units)
     options = Options(tolerance=tolerance(request.tolerance))
     given = overrides(request.set)
@@ -49,25 +50,28 @@ def main(request: FindRequest) -> int:
     once = AnswersOnce(asker)
     found = look(
         asking(once, interval, condition), interval.low, interval.high, condition.relation,
-        count=request.scan, most=request.evaluations,
+        count=scan, most=most,
     )  # fmt: skip
     require_some(found)
     own = shown if request.units else in_unit(shown, condition)
-    page = FoundPage(asker.spec.title, condition, interval, found, request.scan, request.evaluations, own)
+    page = FoundPage(asker.spec.title, condition, interval, found, scan, most, own)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
     warn_of_variants(asker.spec, once, request.quiet)
     return int(request.strict and (not is_met(found, condition) or bool(found.unsolved)))
 
 
-def require_counts(request: FindRequest) -> None:
-    """Raise UsageError where so few places, or so many, are no scan."""
-    if not LEAST_SCAN <= request.scan <= MOST_SCAN:
-        message = f"--scan {request.scan}: accepted: {LEAST_SCAN} to {MOST_SCAN:,}"
+def counts(request: FindRequest) -> tuple[int, int]:
+    """How many variants are in the scan, and at most in all. Raises UsageError."""
+    scan = SCAN if request.scan is None else request.scan
+    most = max(MOST, 2 * scan) if request.evaluations is None else request.evaluations
+    if not LEAST_SCAN <= scan <= MOST_SCAN:
+        message = f"--scan {scan}: accepted: {LEAST_SCAN} to {MOST_SCAN:,}"
         raise UsageError(Problem("bad-option", message, hint="such as --scan 25"))
-    if request.evaluations < request.scan:
-        message = f"--evaluations {request.evaluations}: fewer than the {request.scan} of the scan"
-        raise UsageError(Problem("bad-option", message, hint="such as --evaluations 300"))
+    if most < scan:
+        message = f"--evaluations {most}: fewer than the {scan} of the scan"
+        raise UsageError(Problem("bad-option", message, hint=f"such as --evaluations {MOST}"))
+    return scan, most
 
 
 def at_ends(asker: Asker, interval: Interval) -> list[Spec]:
