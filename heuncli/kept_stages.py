@@ -33,7 +33,10 @@ class KeptStage(NamedTuple):
 
     def stands(self, given: tuple[Any, ...]) -> bool:
         """Whether the stage would see in this input what it saw."""
-        return all(one.stands(new) for one, new in zip(self.looked_at, given, strict=True))
+        for one, new in zip(self.looked_at, given, strict=True):
+            if new is not one.value and not one.stands(new):
+                return False
+        return True
 
 
 class FirstStages(Stages):
@@ -100,8 +103,15 @@ class LookedAt:
         if type(new) is not type(old):
             return False
         if is_record(old):
-            return all(part.stands(getattr(new, name)) for name, part in self.parts.items())
-        return len(new) == len(old) and all(part.stands(new[place]) for place, part in self.parts.items())
+            members = [(part, getattr(new, name)) for name, part in self.parts.items()]
+        elif len(new) != len(old):
+            return False
+        else:
+            members = [(part, new[place]) for place, part in self.parts.items()]
+        for part, member in members:  # noqa: SIM110 - half the time of all()
+            if member is not part.value and not part.stands(member):
+                return False
+        return True
 
 
 def is_record(value: Any) -> bool:

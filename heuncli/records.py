@@ -23,6 +23,9 @@ def record(cls: type[T]) -> type[T]:
 
     def __init__(self: T, *values: Any, **named: Any) -> None:
         own = self.__dict__
+        if not values and named.keys() == known:  # all by their names
+            own.update(named)
+            return
         own.update(zip(names, values))  # noqa: B905 - too many are seen by their number
         if not named:
             if first_optional <= len(values) <= len(names):

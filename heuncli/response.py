@@ -7,6 +7,7 @@ starts from what it is given.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -68,7 +69,7 @@ def numbers_of(layout: Layout) -> dict[str, Any]:
     }
 
 
-def answer_sizes(layout: Layout) -> dict[str, tuple[Any, int]]:
+def answer_kinds(layout: Layout) -> dict[str, tuple[Any, int]]:
     """The parts of what the kernel answers at a state: of which kind, and how many."""
     return {
         "bodies": (BODY_ANSWER, len(layout.place)),
@@ -79,9 +80,9 @@ def answer_sizes(layout: Layout) -> dict[str, tuple[Any, int]]:
     }
 
 
-def room_for_answers(layout: Layout, n_t: int) -> dict[str, Table]:
+def room_for_answers(kinds: Mapping[str, tuple[Any, int]], n_t: int) -> dict[str, Table]:
     """Tables (n_t, n) for what the kernel answers at so many states."""
-    return {name: np.empty((n_t, count), kind) for name, (kind, count) in answer_sizes(layout).items()}
+    return {name: np.empty((n_t, count), kind) for name, (kind, count) in kinds.items()}
 
 
 def as_numbers(table: Table) -> Array:
@@ -92,7 +93,7 @@ def as_numbers(table: Table) -> Array:
 
 def settled(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> tuple[Array, Table]:
     """A state settled on the closures, (n,), and what the kernel tells of the bodies there, tree order."""
-    own, told, nothing = np.array(state, dtype=float), room_for_answers(layout, 1), np.zeros(0)
+    own, told, nothing = np.array(state, dtype=float), room_for_answers(answer_kinds(layout), 1), np.zeros(0)
     arrays = {"times": np.array([t]), "states": own, "branches": nothing, "holding": nothing, "columns": nothing}
     at.recover(arrays | {name: as_numbers(table).reshape(-1) for name, table in told.items()}, True, False)
     return own, told["bodies"][0]

@@ -7,7 +7,6 @@ the instant, or names it as the first place.
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -112,7 +111,7 @@ def _found(results: Results, path: str) -> Numbers:
 
 def _walk(results: Results, path: str) -> tuple[list[str], Any, list[str]]:
     """The keys that a path names, what stands there, and the places behind them."""
-    node: Any = {f.name: getattr(results, f.name) for f in fields(results)}
+    node: Any = vars(results)
     keys: list[str] = []
     rest = words_of(path)
     while rest and isinstance(node, (dict, list, tuple)):

@@ -346,6 +346,11 @@ def _quantity(keys: tuple[str, ...]) -> Quantity | None:
 
 def is_no_number(keys: Sequence[str]) -> bool:
     """Whether what stands under these keys is a block, or words, be it empty."""
+    return _is_no_number(tuple(keys))
+
+
+@lru_cache(maxsize=10_000)
+def _is_no_number(keys: tuple[str, ...]) -> bool:
     rows = (quantity(keys[:n]) for n in range(1, len(keys) + 1))
     return isinstance(under(keys), dict) or any(row is not None and row.is_words for row in rows)
 

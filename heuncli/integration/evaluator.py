@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.records import fields, record
-from heuncli.response import Columns, as_numbers, columns_of, room_for_answers, workspace_of
+from heuncli.response import Columns, answer_kinds, as_numbers, columns_of, room_for_answers, workspace_of
 from heuncli.results import Array, Indices, Mask
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
@@ -65,6 +65,7 @@ class Evaluator:
         self.layout, self.closed_at_start = layout, closed_at_start
         self.workspace = workspace_of(layout)
         self.size = layout.size
+        self.kinds = answer_kinds(layout)
 
     @cached_property
     def start_holding(self) -> Array:
@@ -77,8 +78,12 @@ class Evaluator:
 
     def may_stay(self, gap: Array) -> Array:
         """What accelerations may leave unmet of rows that depend on others, at gaps (n_t,), of the rows' terms."""
-        length = min((island.length for island in self.layout.islands), default=self.size)
-        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / length)
+        return tolerances.UNMET * (self.workspace.least_row + tolerances.RANK_OF_GAP * gap / self.least_length)
+
+    @cached_property
+    def least_length(self) -> float:
+        """Of the islands of loops the shortest length [m]; the scene's size where there are none."""
+        return min((island.length for island in self.layout.islands), default=self.size)
 
     def recovered(
         self,
@@ -100,7 +105,7 @@ class Evaluator:
         """
         layout, n_t = self.layout, len(times)
         n_c = len(layout.tables["loads"]) + len(CAUSES) if causes else 0
-        told, columns = room_for_answers(layout, n_t), np.zeros((n_t, n_c * self.workspace.column_width))
+        told, columns = room_for_answers(self.kinds, n_t), np.zeros((n_t, n_c * self.workspace.column_width))
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
         held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
@@ -111,12 +116,15 @@ class Evaluator:
         answers = {"states": settled, "columns": columns, **{name: as_numbers(table) for name, table in told.items()}}
         self._recover(given, answers, hold_rows, causes)
         rows, whole = told["rows"], told["whole"]
-        # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
-        still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
+        residual = whole["residual"][:, 0]
+        if layout.rows:
+            # behind a blow that ends all motion rates are left by rounding, and what their squares ask for is nothing
+            still = rows["terms"].max(axis=1, initial=0.0) <= tolerances.STILL
+            residual = np.where(still, 0.0, residual)
         return Recovered(
             times=at, states=settled, bodies=told["bodies"], freedoms=told["freedoms"], loads=told["loads"], rows=rows,
             gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
-            residual=np.where(still, 0.0, whole["residual"][:, 0]), may_stay=self.may_stay(whole["gap"][:, 0]),
+            residual=residual, may_stay=self.may_stay(whole["gap"][:, 0]),
             holding=closed,
             causes=columns_of(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))
             if causes

@@ -38,7 +38,7 @@ class Kept:
 
 @record
 class Courses:
-    """The polynomials of a run's steps, of those that made one.
+    """The polynomials of a run's steps, of those that made one; impure: more are put in when they are made again.
 
     spans (n_steps, 3): whether it was kept, begin and length of the step [s]; numbers (n_steps, .): the state at its
     begin and the rows of coefficients, of what is integrated.
@@ -46,6 +46,11 @@ class Courses:
 
     spans: Array
     numbers: Array
+
+    def take(self, first: int, spans: Array, numbers: Array) -> None:
+        """Take over those that some steps from the first on have made, in place."""
+        made = np.flatnonzero(spans[:, 0])
+        self.spans[first + made], self.numbers[first + made] = spans[made], numbers[made]
 
     def known(self, times: Array, step: Indices, ends: Array) -> Mask:
         """Which instants lie within steps whose polynomials were kept, before their ends, (n,)."""

@@ -343,9 +343,10 @@ class Integration:
             held = self.workspace.scene.held_count
             for k in range(run.track.done if held else 0):
                 self.output["branches"][k * held : (k + 1) * held] = run.track.branches[k]
-            for k in range(run.track.done if run.track.coursed else 0):
+        if not cython.compiled and run.track.coursed:
+            for k in range(run.track.done):
                 self.output["spans"][3 * k : 3 * k + 3] = run.track.spans[k]
-            for k in range(self.course_rows * run.track.done if run.track.coursed else 0):
+            for k in range(self.course_rows * run.track.done):
                 self.output["courses"][k * run.n : (k + 1) * run.n] = run.track.courses[k]
         return code
 

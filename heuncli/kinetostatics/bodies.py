@@ -100,6 +100,11 @@ class CarriedStates(BodyStates):
     Few runs need all of it: to load a joint the kernel's answers suffice, to balance a body its centre.
     """
 
+    _table: Table
+    _order: list[int] | None
+    _gravity: Array
+    _beside: Mapping[str, Array]
+
     def __init__(self, table: Table, order: Sequence[int], gravity: Array, beside: Mapping[str, Array]) -> None:
         """table: the kernel's, tree order (accelerations less g); order: each body's place in it.
 

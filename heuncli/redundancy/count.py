@@ -44,23 +44,28 @@ class Redundancy(NamedTuple):
 
 
 def redundancy(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> Redundancy:
-    """Count what is held twice: it hangs on no load, and is counted without any; stages: that is one."""
+    """Count what is held twice: it hangs on no load; stages: that is one, of the scene without loads."""
     if not scene.layout.rows:
         return Redundancy(0, 0, 0, 0, None, 0)
     drives = tuple(joint.drive.value for joint in scene.mechanism.joints if joint.drive is not None)
-    return stages.run(counted, without_loads(scene.layout), drives, runner.start_holding)
+    bare, holding = without_loads(scene.layout), runner.start_holding
+    return stages.run(counted_without_loads, bare, drives, holding, by=lambda: counted(runner))
 
 
-def counted(layout: Layout, drives: tuple[Expression, ...], holding: Array) -> Redundancy:
-    """Count what is held twice in a scene with closed chains.
+def counted_without_loads(layout: Layout, drives: tuple[Expression, ...], holding: Array) -> Redundancy:
+    """Count what is held twice in a scene without loads.
 
     drives: whose programs it has; holding (contacts,): which are closed at the start.
     """
+    return counted(Evaluator(replace(layout, pack=pack_of(drives)), lambda _: holding))
+
+
+def counted(runner: Evaluator) -> Redundancy:
+    """Count what is held twice in a scene with closed chains."""
     from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
     from heuncli.redundancy.self_stress import KnownStress, poses_of, self_stress, stress_of
 
-    layout = replace(layout, pack=pack_of(drives))
-    runner = Evaluator(layout, lambda _: holding)
+    layout = runner.layout
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     closed = int(here.rows["closed"][0].sum())
     states = body_states(layout, here)

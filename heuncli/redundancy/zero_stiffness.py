@@ -60,6 +60,8 @@ def vanishing(stress: SelfStress, maps: Sequence[Array]) -> list[Array]:
     for n, soft in enumerate(maps):
         own = np.zeros_like(soft)
         for rows in (slice(0, 3), slice(3, 6)):
+            if not soft[:, rows].any():
+                continue
             X, cosine, _ = np.linalg.svd(Q[:, 6 * n : 6 * n + 6][:, rows], full_matrices=False)
             X = X * (1.0 - cosine * cosine <= tolerances.HELD_BY_OTHERS)[:, None, :]
             own[:, rows] = X @ X.transpose(0, 2, 1) @ soft[:, rows]

@@ -29,39 +29,39 @@ def body_by_body(values: Array) -> Array:
     return np.ascontiguousarray(values.transpose(0, last, *range(1, last))).swapaxes(0, 1)
 
 
+NEXT, LAST = np.array([1, 2, 0]), np.array([2, 0, 1])  # of each component those behind it, in turn
+
+
 def cross(a: Array, b: Array) -> Array:
     """a x b, (n, 3, n_t)."""
-    out = np.empty(a.shape)
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        np.subtract(a[:, j] * b[:, k], a[:, k] * b[:, j], out=out[:, i])
-    return out
+    return np.asarray(a.take(NEXT, 1) * b.take(LAST, 1) - a.take(LAST, 1) * b.take(NEXT, 1))
 
 
 def turned(R: Array, vectors: Array) -> Array:
     """R v, (n, 3, n_t)."""
-    x, y, z = (R[:, :, i] * vectors[:, None, i] for i in range(3))
-    return np.asarray(x + z + y)
+    each = R * vectors[:, None]
+    return np.asarray(each[:, :, 0] + each[:, :, 2] + each[:, :, 1])
 
 
 def turned_back(R: Array, vectors: Array) -> Array:
     """R^T v, (n, 3, n_t)."""
-    x, y, z = (R[:, i] * vectors[:, i, None] for i in range(3))
-    return np.asarray(x + y + z)
+    each = R * vectors[:, :, None]
+    return np.asarray(each[:, 0] + each[:, 1] + each[:, 2])
 
 
 def form(x: Array, J: Array) -> Array:
     """x . J x of vectors and matrices (n, 3, 3), (n, n_t)."""
-    found = np.zeros((x.shape[0], x.shape[2]))
-    for i in range(3):
-        for j in range(3):
-            found += x[:, i] * J[:, i, j, None] * x[:, j]
-    return found
+    each = (x[:, :, None] * J[..., None] * x[:, None]).reshape(len(x), 9, x.shape[2])
+    found = each[:, 0] + each[:, 1]
+    for k in range(2, 9):
+        found += each[:, k]
+    return np.asarray(found)
 
 
 def squares(vectors: Array) -> Array:
     """v . v, (n, n_t)."""
-    x, y, z = (vectors[:, i] * vectors[:, i] for i in range(3))
-    return np.asarray(x + y + z)
+    each = vectors * vectors
+    return np.asarray(each[:, 0] + each[:, 1] + each[:, 2])
 
 
 def largest(values: Array) -> Array:

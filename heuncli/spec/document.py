@@ -95,17 +95,16 @@ class Reader:
             hint = f"each under a name of its own: {block}: {{NAME: {{...}}}}"
             self.report("wrong-kind", Violation((block,), f"expected a mapping, found {kind_of(entries)}", hint))
             return {}
-        read: dict[str, Any] = {}
-        for name, data in entries.items():
-            path = (block, name)
-            entry = (
-                self.typed(path, data, models, block) if isinstance(models, Mapping) else self.model(path, data, models)
-            )
-            if entry is not None and getattr(entry, "shapes", None) is not None:
-                entry = self.with_shapes(path, entry)
-            if entry is not None:
-                read[name] = entry
-        return read
+        read = {name: self.entry(block, name, data, models) for name, data in entries.items()}
+        return {name: entry for name, entry in read.items() if entry is not None}
+
+    def entry(self, block: str, name: str, data: Any, models: type[Entry] | Mapping[str, type[Entry]]) -> Any:
+        """An entry of a block; None where it is in error."""
+        path = (block, name)
+        entry = self.typed(path, data, models, block) if isinstance(models, Mapping) else self.model(path, data, models)
+        if entry is not None and getattr(entry, "shapes", None) is not None:
+            entry = self.with_shapes(path, entry)
+        return entry
 
     def with_shapes(self, path: Path_, body: f.BodyEntry) -> f.BodyEntry | None:
         """A body with its shapes read; None where one is in error."""

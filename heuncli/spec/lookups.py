@@ -174,9 +174,11 @@ def changed_in_entry(of: str, new: Entry, old: Entry) -> Iterator[Lookup]:
 
 
 def alike(new: Any, old: Any) -> bool:
-    """Whether two values of fields are the same; entries by their own."""
+    """Whether two values of fields are the same; entries by their own, also in lists."""
     if new is old:
         return True
+    if type(new) is type(old) is list:
+        return len(new) == len(old) and all(map(alike, new, old))
     if not isinstance(old, Entry) or type(new) is not type(old):
         return same(new, old)
     own = all(alike(getattr(new, name), value) for name, value in vars(old).items())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
@@ -11,8 +12,9 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
 from heuncli.results_schema import counted
 from heuncli.spec.names import NAMED, mapping
-from heuncli.spec.source import Path_, parse
+from heuncli.spec.source import Path_, parse, plain
 
+FIGURE = re.compile(r"[+-]?[0-9]{1,18}(\.[0-9]{0,18})?([eE][+-]?[0-9]{1,3})?")  # that YAML could but read as itself
 OWN = ("title", "gravity", "space", "report")  # keys without a dot, beside the parameters
 
 
@@ -33,7 +35,7 @@ def of_words(given: Mapping[str, str]) -> tuple[list[Setting], list[Problem]]:
         word = f"--set {key}={text}"
         place = SourceLocation(word, 1, len(key) + 2, key)
         try:
-            value = parse(word, text if text.strip() else "''", "").data
+            value = plain(text) if FIGURE.fullmatch(text) else parse(word, text if text.strip() else "''", "").data
         except SpecError as error:
             problems += [Problem(p.code, p.message, place, p.hint) for p in error.problems]
             continue

@@ -40,7 +40,7 @@ from heuncli.spec.source import Path_, SourceFile, dotted, read
 from heuncli.spec.tables import Wrong
 
 WHOLE = ("title", "space", "gravity", "ground", "report", "foundation", "expect", "cases", "warnings")  # of a scene
-MOST_PLANS = 1024  # of rules to be applied again, by what differs: most variants differ in the same
+MOST_PLANS = 1024  # of what is done again, by what differs
 
 
 class SpecVariants:
@@ -114,7 +114,18 @@ class KeptVerdict(NamedTuple):
     lookups: frozenset[Lookup] | None
 
 
-Verdicts = list[tuple[Rule, tuple[Violation, ...] | None]]
+class Standing(NamedTuple):
+    """Parts of a scene that mean what they meant, by block and name; and the blocks of which all entries do."""
+
+    parts: frozenset[tuple[str, Any]]
+    blocks: frozenset[str]
+
+
+class Plan(NamedTuple):
+    """Rules with what they found, None where that may be something else; and what paths into the results lead to."""
+
+    verdicts: list[tuple[Rule, tuple[Violation, ...] | None]]
+    reached: dict[str, Any]
 
 
 class KeptMeaning(NamedTuple):
@@ -139,13 +150,17 @@ class FirstReading(Loading):
         super().__init__(path, source, overrides, checking, case, files)
         self.log = Log()
         self.entries: dict[Path_, KeptEntry] = {}
+        self.document: f.Document
         self.with_shapes: dict[Path_, tuple[f.BodyEntry, f.BodyEntry]] = {}  # as read, and with its shapes
         self.built: dict[str, KeptTable] = {}
         self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
         self.verdicts: list[KeptVerdict] = []
         self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
+        self.reached: dict[str, KeptMeaning] = {}
         self.below: dict[frozenset[Path_], list[Path_]] = {}
-        self.plans: dict[frozenset[Lookup], Verdicts] = {}
+        self.plans: dict[frozenset[Lookup], Plan] = {}
+        self.meant_still: dict[frozenset[Lookup], Standing] = {}
+        self.readings: dict[frozenset[Lookup], list[tuple[str, Any]]] = {}
 
     def spec(self) -> Spec:
         """The scene. Raises SpecError."""
@@ -203,6 +218,17 @@ class FirstReading(Loading):
                 lookups = self.log.taken() if tuple(rule.check(looking)) == found else None
             self.verdicts.append(KeptVerdict(found, lookups))
             yield from ((rule, violation) for violation in found)
+        for path, reached in draft.reached.items():
+            self._keep_reached(path, reached, Names(entries, points, joints, {}))
+
+    def _keep_reached(self, path: str, reached: Any, names: Names) -> None:
+        """Keep what a path into the results leads to."""
+        from heuncli.spec.rules.outcome import reached_in  # few specs have such paths
+
+        self.log.taken()
+        with suppress(Exception):
+            if same(reached_in(DraftDocument(self.watched, names, frozenset(), {}), path), reached):
+                self.reached[path] = KeptMeaning(reached, self.log.taken())
 
     def locations(self) -> dict[str, SourceLocation]:
         """Locations for later stages."""
@@ -210,16 +236,40 @@ class FirstReading(Loading):
         self.located = super().locations()
         return self.located
 
-    def standing(self, differing: frozenset[Lookup]) -> Verdicts:
-        """Where something differs: the rules and what they found, None where they may find something else."""
+    def fallen(self, changed: frozenset[Lookup]) -> list[tuple[str, Any]]:
+        """Where lookups give something else: what is to be read again, by block and name; of a single block by it."""
+        if changed not in self.readings:
+            forget_many(self.readings)
+            paths = [path for path, kept in self.entries.items() if not kept.lookups.isdisjoint(changed)]
+            found = [(str(path[0]), path[1] if len(path) > 1 else None) if path else ("head", None) for path in paths]
+            self.readings[changed] = [one for one in dict.fromkeys(found) if one[0] in f.Document._fields]
+        return self.readings[changed]
+
+    def standing(self, differing: frozenset[Lookup]) -> Standing:
+        """Which parts of the scene mean what they meant where something differs."""
+        if differing not in self.meant_still:
+            forget_many(self.meant_still)
+            parts = {key for key, kept in self.meanings.items() if kept.lookups.isdisjoint(differing)}
+            names = {block: getattr(self.draft.document, block) for block in f.Document._fields}
+            blocks = {
+                block
+                for block, entries in names.items()
+                if isinstance(entries, dict) and all((block, name) in parts for name in entries)
+            }
+            self.meant_still[differing] = Standing(frozenset(parts), frozenset(blocks))
+        return self.meant_still[differing]
+
+    def plan(self, differing: frozenset[Lookup]) -> Plan:
+        """What stands of the rules' verdicts where something differs."""
         if differing not in self.plans:
-            if len(self.plans) == MOST_PLANS:
-                self.plans.clear()
+            forget_many(self.plans)
             plan = [
                 (rule, kept.violations if kept.lookups is not None and kept.lookups.isdisjoint(differing) else None)
                 for rule, kept in zip(self.rules, self.verdicts, strict=True)
             ]
-            self.plans[differing] = [(rule, found) for rule, found in plan if found is None or found]
+            told = [(rule, found) for rule, found in plan if found is None or found]
+            reached = {path: kept.value for path, kept in self.reached.items() if kept.lookups.isdisjoint(differing)}
+            self.plans[differing] = Plan(told, reached)
         return self.plans[differing]
 
     def places_in(self, paths: frozenset[Path_]) -> list[Path_]:
@@ -235,6 +285,11 @@ class FirstReader(Reader):
     def __init__(self, first: FirstReading, context: Context) -> None:
         super().__init__(first.data, context, first.report)
         self.first = first
+
+    def document(self) -> f.Document:
+        """All that can be read."""
+        self.first.document = super().document()
+        return self.first.document
 
     def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
         """One model."""
@@ -345,7 +400,9 @@ class LaterReading(Loading):
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """What of the document breaks a rule."""
         self.differing = frozenset(self._differing(draft))
-        for rule, kept in self.first.standing(self.differing):
+        plan = self.first.plan(self.differing)
+        draft.reached.update(plan.reached)
+        for rule, kept in plan.verdicts:
             found = rule.check(draft) if kept is None else kept
             yield from ((rule, violation) for violation in found)
 
@@ -375,15 +432,17 @@ class LaterResolver(Resolver):
     def __init__(self, later: LaterReading, document: f.Document, meaning: Meaning) -> None:
         super().__init__(document, meaning.locations, meaning.curves)
         first = later.first
-        self.kept, self.before = first.meanings, first.resolved
+        self.kept, self.before, self.drafted = first.meanings, first.resolved, first.draft.document
         curves = changed("curves", meaning.curves, first.curved)
-        self.differing = later.differing.union((Lookup("locations", words) for words in later.moved), curves)
+        moved = (Lookup("locations", words) for words in later.moved)
+        self.standing = first.standing(later.differing.union(moved, curves))
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean; of a block in which all stand the first one."""
-        made, entries = getattr(self, by), getattr(self.document, block)
+        made, entries, before = getattr(self, by), getattr(self.document, block), getattr(self.before, block)
+        if type(before) is dict and entries is getattr(self.drafted, block) and block in self.standing.blocks:
+            return before
         found = {name: self._of((block, name), partial(made, name, entry)) for name, entry in entries.items()}
-        before = getattr(self.before, block)
         unchanged = type(before) is dict and _is_as_before(found, before)
         return before if unchanged else found
 
@@ -395,7 +454,7 @@ class LaterResolver(Resolver):
         kept = self.kept.get(key)
         if kept is None:
             return made()
-        return kept.value if kept.lookups.isdisjoint(self.differing) else shared(made(), kept.value)
+        return kept.value if key in self.standing.parts else shared(made(), kept.value)
 
 
 class LaterReader(Reader):
@@ -403,7 +462,31 @@ class LaterReader(Reader):
 
     def __init__(self, later: LaterReading, context: Context, changed: frozenset[Lookup]) -> None:
         super().__init__(later.data, context, later.report)
-        self.first, self.changed = later.first, changed
+        self.first, self.changed, self.by_parameters = later.first, changed, later.by_parameters
+
+    def document(self) -> f.Document:
+        """All that can be read: where parameters alone are others, what hangs on those that have changed."""
+        if not self.by_parameters:
+            return super().document()
+        anew: dict[str, Any] = {}
+        for block, name in self.first.fallen(self.changed):
+            if block in f.SINGLE:
+                anew[block] = self.single(block, f.SINGLE[block])
+            elif block == "head":
+                anew[block] = self.head()
+            else:
+                entries = anew.setdefault(block, {**getattr(self.first.document, block)})
+                entries[name] = self._again(block, name)
+                if entries[name] is None:
+                    del entries[name]
+        return self.first.document._replace(**anew)
+
+    def _again(self, block: str, name: Any) -> Any:
+        """An entry that the first reading has read."""
+        data = self.data[block][name]
+        if block == "expect":
+            return self.model((block, name), data, f.ExpectEntry)
+        return self.entry(block, name, data, f.ENTRIES[block])
 
     def model(self, path: Path_, data: Any, model: type[Entry]) -> Any:
         """One model."""
@@ -434,6 +517,12 @@ def _unchanged(given: dict[str, Any], before: dict[str, Any], evaluated: Paramet
         [],
         {name: value for name, value in evaluated.uses.items() if name in standing},
     )
+
+
+def forget_many(kept: dict[Any, Any]) -> None:
+    """Forget what is kept where there is too much of it: most variants differ in the same."""
+    if len(kept) == MOST_PLANS:
+        kept.clear()
 
 
 def _is_as_before(new: Any, old: Any) -> bool:

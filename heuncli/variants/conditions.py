@@ -22,7 +22,7 @@ FORM = "expected MEASURE < VALUE"
 HINT = "such as 'max abs sections.web.M2 < 40 N*m'"
 
 
-class Condition(NamedTuple):
+class MeasureCondition(NamedTuple):
     """The words of a measure, the sign, and what stands behind it as it is written."""
 
     measure: str
@@ -35,7 +35,7 @@ class Condition(NamedTuple):
         return self.sign in ("<", "<=")
 
 
-def condition_of(text: str, form: str = FORM, hint: str = HINT) -> Condition:
+def condition_of(text: str, form: str = FORM, hint: str = HINT) -> MeasureCondition:
     """What a text such as `max joints.main.force < 10 kN` says. Raises AxisError."""
     found = PARTS.match(text)
     sign = SPELLINGS.get(found[2]) if found is not None else None
@@ -46,10 +46,10 @@ def condition_of(text: str, form: str = FORM, hint: str = HINT) -> Condition:
         turned = figure_of(found[1]) is not None
         message = "the measure stands first" if turned else f"'{found[3].strip()}' is not a number with or without unit"
         raise AxisError(text, message, hint)
-    return Condition(found[1].strip(), sign, figure)
+    return MeasureCondition(found[1].strip(), sign, figure)
 
 
-def in_si(condition: Condition, unit: str) -> float:
+def in_si(condition: MeasureCondition, unit: str) -> float:
     """The number of a condition in SI; unit: the measure's own, empty where it is not known. Raises AxisError."""
     value, given = condition.figure
     if not given:

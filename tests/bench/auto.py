@@ -70,9 +70,8 @@ class Scene(NamedTuple):
         both = interleaved(self.exact.times[:n], [run.states[:n], self.exact.states[:n]])
         layout = self.runner.layout
         found = recovered_at(self.runner, self.exact, *both, self.jumps)
-        return 0.5 * float(
-            motion_error(Marks(layout), found.bodies, 2, layout.size).max()
-        )  # it is twice the difference
+        twice = motion_error(Marks(layout), found.bodies, 2, layout.size)
+        return 0.5 * float(twice.max())
 
 
 def scenes() -> Iterator[tuple[str, str | None]]:

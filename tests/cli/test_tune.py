@@ -111,10 +111,8 @@ def test_half_of_the_box_does_not_close(heun: Heun) -> None:
 def test_nothing_can_be_solved(heun: Heun) -> None:
     done = heun("tune", "gable.yaml", "b=0.2:0.9m", "--minimise", "joints.k.force", "--evaluations", "9")
     assert done.returncode == 3 and done.stdout == ""
-    assert (
-        "none of 8 variants could be solved; 8 of them as this one: joint k" in done.stderr
+    assert "none of 8 variants could be solved; 8 of them as this one: joint k" in done.stderr
     assert "hint: " in done.stderr
-    )
 
 
 def test_negative_masses_are_variants_that_cannot_be_solved(heun: Heun) -> None:

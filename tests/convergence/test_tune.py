@@ -11,11 +11,11 @@ import pytest
 from heuncli.commands.tune.results import (
     Constraint,
     Goal,
-    Outcome,
     Reading,
+    TrialOutcome,
+    TunedVariable,
     TuneResults,
     TuneTask,
-    Variable,
 )
 from heuncli.commands.tune.study import Tuning
 from heuncli.commands.tune.trials import TIME_LIMIT, Trials
@@ -38,25 +38,25 @@ def tuned(
     seed: int = 0,
 ) -> TuneResults:
     """What is found of a function over the unit box, whose constraints are to be 0 or less."""
-    variables = tuple(Variable(f"x{i}", 0.0, 1.0, "") for i in range(n))
+    variables = tuple(TunedVariable(f"x{i}", 0.0, 1.0, "") for i in range(n))
     limits = tuple(Constraint(f"c{i}", "<=", 0.0, "") for i in range(len(constraints)))
     task = TuneTask(variables, Goal("f", "", greatest), limits, most=most, seed=seed)
     solved: list[Mapping[str, str]] = []
 
-    def answers(several: Sequence[Mapping[str, str]]) -> Iterator[Outcome]:
+    def answers(several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
         for values in several:
             if len(solved) >= time_for:
-                yield Outcome(code=TIME_LIMIT)
+                yield TrialOutcome(code=TIME_LIMIT)
                 return
             assert values not in solved  # nothing is solved twice
             solved.append(values)
             x = np.array([float(text) for text in values.values()])
             if unsolvable(x):
-                yield Outcome(code="does-not-close", reason="it does not close")
+                yield TrialOutcome(code="does-not-close", reason="it does not close")
             else:
-                yield Outcome((Reading(goal(x), error), *(Reading(c(x)) for c in constraints)))
+                yield TrialOutcome((Reading(goal(x), error), *(Reading(c(x)) for c in constraints)))
 
-    tuning = Tuning(Trials(task, answers, lambda done, of, what: None), Outcome())
+    tuning = Tuning(Trials(task, answers, lambda done, of, what: None), TrialOutcome())
     tuning.run()
     found = tuning.results()
     assert len(found.history) == len(solved) <= most
@@ -164,7 +164,7 @@ def test_a_jump() -> None:
     found = tuned(lambda x: float((x[0] - 0.3) ** 2 + (x[1] - 0.6) ** 2 + (5.0 if x[0] > 0.25 else 0.0)) + 1.0)
     assert found.ending == "converged" and best_of(found) == pytest.approx(1.0025, abs=1e-5)
     up = found.freedoms[0].of_hundredth[1]
-    assert up is not None and (up.by, up.until) == (0.0, "jump")
+    assert up is not None and up.by < 1e-6 and up.until == "jump"
 
 
 @pytest.mark.parametrize("noise", [1e-3, 1e-5])
@@ -240,7 +240,7 @@ def test_the_same_seed_the_same_variants() -> None:
 @pytest.mark.parametrize(("low", "high"), [(0.0, 3.0), (1000.0, 1000.001), (-5e-9, 5e-9), (0.0, 1e9)])
 def test_values_are_told_as_they_are_solved(low: float, high: float) -> None:
     """In few digits beside the width of the interval, both bounds exactly."""
-    variable = Variable("x", low, high, "kg")
+    variable = TunedVariable("x", low, high, "kg")
     assert (variable.value(0.0), variable.value(1.0)) == (low, high)
     for place in np.random.default_rng(0).random(50):
         value = variable.value(float(place))

@@ -50,13 +50,12 @@ def runner_of(scene: str) -> tuple[Runner, float]:
     return setup.runner, min(float(setup.spec.analysis.times[-1]), 2.0)
 
 
-def run_of(scene: str, method: Method, times: Array) -> Trajectory:
-    """A coarse run, whose steps are long."""
+def run_of(scene: str, method: Method, times: Array, *, keeping: bool = False) -> Trajectory:
+    """A coarse run, whose steps are long; keeping: the polynomials of those that made one."""
     runner, end = runner_of(scene)
     jumps = discontinuities_of(runner.layout.mechanism, 0.0, end)
-    return runner.trajectory(
-        MotionTask(times, end / COUNT if method.fixed else 1e-5, discontinuities=jumps, method=method)
-    )
+    local = end / COUNT if method.fixed else 1e-5
+    return runner.trajectory(MotionTask(times, local, discontinuities=jumps, method=method, keeping=keeping))
 
 
 def looked_at(run: Trajectory) -> Array:
@@ -87,6 +86,12 @@ def test_other_instants_are_the_runs_own(name: str, scene: str) -> None:
     shown, alone = runner.resample(run, times), runner.resample(run, times[::7])
     assert np.array_equal(shown, direct.states)
     assert np.array_equal(alone, direct.states[::7])
+    keeps = run_of(scene, method, np.append(run.times[:-1], end) if run.stopped else run.times, keeping=True)
+    sampled = run_of(scene, method, whole[::2] if len(whole) % 2 else np.append(whole[:-1:2], end), keeping=True)
+    for kept in (keeps, sampled):  # none of whose steps made a polynomial of its own, but for events; some of whose did
+        assert kept.ends.tolist() == run.ends.tolist()
+        assert np.array_equal(runner.resample(kept, times), direct.states)
+        assert np.array_equal(runner.resample(kept, times), direct.states)  # by what was done again, too
 
 
 def test_a_run_hangs_on_no_other() -> None:

@@ -8,6 +8,7 @@ import pytest
 from heuncli.kept_stages import FirstStages, LaterStages
 from heuncli.records import record, replace
 from heuncli.results import Array
+from heuncli.stages import Stages
 
 
 @record
@@ -105,3 +106,42 @@ def test_what_fails_is_not_kept_and_what_is_kept_cannot_be_written_to() -> None:
     assert (failing, "") not in first.kept
     with pytest.raises(ValueError, match="read-only"):
         first.run(reach, scene())[0] = 1.0
+
+
+def test_a_stage_of_stages_is_kept_as_a_whole_and_else_made_of_those_that_stand() -> None:
+    made: list[str] = []
+
+    def lengths(given: Scene) -> Array:
+        made.append("lengths")
+        return np.array([bar.length for bar in given.bars])
+
+    def moments(given: Scene, of: Array) -> Array:
+        made.append("moments")
+        return np.array([bar.mass for bar in given.bars]) * of**2
+
+    def both(given: Scene) -> Array:
+        return moments(given, lengths(given))
+
+    def of_stages(given: Scene, stages: Stages) -> Array:
+        return stages.run(
+            both, given, by=lambda: stages.run(moments, given, stages.run(lengths, given))
+        )  # fmt: skip
+
+    first = FirstStages()
+    of_stages(scene(), first)
+    later = LaterStages(first)
+    for other, again in (
+        (scene(x=1.0), []),
+        (scene(mass=2.0), ["moments"]),
+        (scene(length=0.7), ["lengths", "moments"]),
+    ):
+        made.clear()
+        assert of_stages(other, later).tolist() == both(other).tolist()
+        assert made[: len(again)] == again
+        assert made[len(again) :] == ["lengths", "moments"]
+
+
+def test_a_stage_of_stages_that_give_something_else_is_not_kept() -> None:
+    first = FirstStages()
+    assert first.run(reach, scene(), by=lambda: np.zeros(2)).tolist() == [0.0, 0.0]
+    assert not first.kept

@@ -7,21 +7,21 @@ import math
 import pytest
 
 from heuncli.variants.axes import AxisError, Figure
-from heuncli.variants.conditions import Condition, condition_of, in_si
+from heuncli.variants.conditions import MeasureCondition, condition_of, in_si
 
 
 @pytest.mark.parametrize(
     ("text", "condition"),
     [
-        ("max joints.main.force = 10 kN", Condition("max joints.main.force", "=", Figure(10.0, "kN"))),
-        ("max abs sections.web.M2<40", Condition("max abs sections.web.M2", "<", Figure(40.0, ""))),
-        ("at 0.5 joints.a.angle >= -3e-2deg", Condition("at 0.5 joints.a.angle", ">=", Figure(-0.03, "deg"))),
-        (" x.y ≤ 2 N·m ", Condition("x.y", "<=", Figure(2.0, "N·m"))),
-        ("x.y == 2 1/s", Condition("x.y", "=", Figure(2.0, "1/s"))),
-        ("x.y => 2", Condition("x.y", ">=", Figure(2.0, ""))),
+        ("max joints.main.force = 10 kN", MeasureCondition("max joints.main.force", "=", Figure(10.0, "kN"))),
+        ("max abs sections.web.M2<40", MeasureCondition("max abs sections.web.M2", "<", Figure(40.0, ""))),
+        ("at 0.5 joints.a.angle >= -3e-2deg", MeasureCondition("at 0.5 joints.a.angle", ">=", Figure(-0.03, "deg"))),
+        (" x.y ≤ 2 N·m ", MeasureCondition("x.y", "<=", Figure(2.0, "N·m"))),
+        ("x.y == 2 1/s", MeasureCondition("x.y", "=", Figure(2.0, "1/s"))),
+        ("x.y => 2", MeasureCondition("x.y", ">=", Figure(2.0, ""))),
     ],
 )
-def test_read(text: str, condition: Condition) -> None:
+def test_read(text: str, condition: MeasureCondition) -> None:
     assert condition_of(text) == condition
     assert condition.below is (condition.sign in ("<", "<="))
 

@@ -11,9 +11,14 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SpecError
+from heuncli.spec.entries import fields_of
+from heuncli.spec.format import BallJoint, ForceEntry, PinJoint
 from heuncli.spec.load import load
+from heuncli.spec.lookups import GIVEN, KEYS, KIND, Log, Lookup, WatchedDocument, changed_in_document
 from heuncli.spec.models import Spec
+from heuncli.spec.overrides import FIGURE, of_words
 from heuncli.spec.sharing import same
+from heuncli.spec.source import parse
 from heuncli.spec.variants import SpecVariants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
@@ -127,3 +132,83 @@ def test_values_are_the_same_to_the_bit_and_by_type() -> None:
     assert not same({"a": 1, "b": 2}, {"b": 2, "a": 1})
     assert not same((1.0, 2.0), (1.0,))
     assert not same(object(), object())
+
+
+def test_what_an_entry_is_asked_for_is_written_down_field_by_field(scene: Path) -> None:
+    document = SpecVariants(scene)._first.draft.document
+    log = Log()
+    watched = WatchedDocument("document", document, log)
+    assert isinstance(watched.forces["push"], ForceEntry)
+    assert log.taken() == {Lookup("document.forces", "push"), Lookup("document.forces.push", KIND)}
+    assert watched.forces["push"].vector is document.forces["push"].vector
+    assert Lookup("document.forces.push", "vector") in log.taken()
+    assert "vector" in watched.forces["push"].model_fields_set
+    assert Lookup("document.forces.push", GIVEN) in log.taken()
+    assert vars(watched.joints["foot"]) == vars(document.joints["foot"])
+    assert Lookup("document.joints.foot", KEYS) in log.taken()
+    assert "gust" not in watched.forces
+    assert Lookup("document.forces", "gust") in log.taken()
+    assert [*watched.bodies] == ["long", "short"]
+    assert log.taken() == {Lookup("document.bodies", KEYS)}
+    assert watched.head.gravity == document.head.gravity
+    assert log.taken() == {Lookup("document.head", "gravity")}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "differing"),
+    [
+        ("F", "11 N", {("forces.push", "vector"), ("forces.push", KEYS), ("expect.0", "is_"), ("expect.0", KEYS)}),
+        ("g", "9.8", {("head", "gravity"), ("head", KEYS)}),
+        ("L", "1.0", set()),
+        ("joints.knee.type", "ball", {("joints.knee", KIND), ("joints.knee", KEYS), ("joints.knee", "type")}),
+        ("expect.1.rel", "0.1", {("expect.1", "rel"), ("expect.1", KEYS), ("expect.1", GIVEN)}),
+        ("forces.brake", "null", {("forces", "brake"), ("forces", KEYS)}),
+    ],
+)
+def test_what_differs_between_two_documents(scene: Path, key: str, value: str, differing: set[tuple[str, str]]) -> None:
+    old = SpecVariants(scene)._first.draft.document
+    if value == "null":
+        new = old._replace(forces={name: force for name, force in old.forces.items() if name != "brake"})
+    elif key == "joints.knee.type":
+        knee = old.joints["knee"]
+        ball = BallJoint.model_construct(**{**vars(knee), "type": "ball"})
+        object.__setattr__(ball, "__pydantic_fields_set__", knee.model_fields_set)
+        new = old._replace(joints={**old.joints, "knee": ball})
+    else:
+        new = SpecVariants(scene, overrides={key: value})._first.draft.document
+    found = {(one.of.removeprefix("document."), one.key) for one in changed_in_document("document", new, old)}
+    if key == "joints.knee.type":  # a pin has keys that a ball does not have
+        found -= {("joints.knee", name) for name in fields_of(PinJoint).keys() - fields_of(BallJoint).keys()}
+    assert found == differing
+
+
+def test_what_is_read_again_is_planned_for_what_differs_and_not_for_names(scene: Path) -> None:
+    variants = SpecVariants(scene)
+    first = variants._first
+    for F in ("11 N", "12 N", "13 N"):
+        variants.load({"F": F})
+    assert len(first.readings) == len(first.plans) == len(first.meant_still) == 1
+    ((_, again),) = first.readings.items()
+    assert again == [("forces", "push"), ("expect", 0)]
+    ((_, plan),) = first.plans.items()
+    assert {rule.code for rule, found in plan.verdicts if found is None} == {"expect-form", "expect-instants"}
+    ((_, standing),) = first.meant_still.items()
+    assert ("forces", "push") not in standing.parts
+    assert {("forces", "brake"), ("bodies", "long"), ("expect", 1), ("analysis", None)} <= standing.parts
+    assert "bodies" in standing.blocks and "forces" not in standing.blocks
+    variants.load({"H": "3"})
+    assert len(first.readings) == 2
+
+
+@pytest.mark.parametrize("text", ["12", "-1.5", "+3", "1.", "0.5e-3", "012", "-0", "1e400", "1E5", "00.5", "9" * 18])
+def test_a_plain_figure_is_what_yaml_makes_of_it(text: str) -> None:
+    assert FIGURE.fullmatch(text)
+    ((setting,), problems) = of_words({"F": text})
+    assert problems == []
+    assert [*bits(setting.value)] == [*bits(parse("x", text, "").data)]
+    assert type(setting.value) is type(parse("x", text, "").data)
+
+
+@pytest.mark.parametrize("text", ["1:30", "1_000", "0x10", "1e", "- 1", "1 ", "٣", "1.5.2", ".5", "9" * 19, "~"])
+def test_what_is_no_plain_figure_is_read_as_yaml(text: str) -> None:
+    assert not FIGURE.fullmatch(text)

@@ -12,7 +12,7 @@ from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
-from heuncli.commands.find.condition import Condition, condition_of, parsed
+from heuncli.commands.find.condition import FindCondition, condition_of, parsed
 from heuncli.commands.find.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
 from heuncli.commands.find.request import FORMATS, FindRequest
@@ -88,7 +88,7 @@ def at_ends(asker: Asker, interval: Interval) -> list[Spec]:
     return specs
 
 
-def asking(once: AnswersOnce, interval: Interval, condition: Condition) -> Callable[[float], Sample]:
+def asking(once: AnswersOnce, interval: Interval, condition: FindCondition) -> Callable[[float], Sample]:
     """What is known of the measure at a value of the unknown."""
 
     def ask(x: float) -> Sample:
@@ -114,7 +114,7 @@ def require_some(found: CourseFindings) -> None:
         )
 
 
-def in_unit(shown: Units, condition: Condition) -> Units:
+def in_unit(shown: Units, condition: FindCondition) -> Units:
     """Units in which the measure is told: that in which its value was given."""
     if not condition.own or not condition.unit:
         return shown
@@ -122,7 +122,7 @@ def in_unit(shown: Units, condition: Condition) -> Units:
     return Units({**shown.shown, condition.unit: (condition.own, of_si / size)})
 
 
-def is_met(found: CourseFindings, condition: Condition) -> bool:
+def is_met(found: CourseFindings, condition: FindCondition) -> bool:
     """Whether the condition is met anywhere."""
     if SIDES[condition.relation]:
         return bool(found.met) or ("=" in condition.relation and bool(found.crossings or found.touches))

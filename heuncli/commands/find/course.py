@@ -61,7 +61,7 @@ class SpentError(Exception):
     """As many places have been asked as may be."""
 
 
-class Course:
+class MeasureCourse:
     """What is known of g over an interval; asks for more.
 
     jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,

@@ -15,8 +15,8 @@ from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.sensitivity.derivative import derivative
 from heuncli.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
 from heuncli.commands.sensitivity.request import FORMATS, SensitivityRequest
-from heuncli.commands.sensitivity.results import Derivative, NoisyValue
-from heuncli.commands.sensitivity.spread import Spread, summed
+from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.commands.sensitivity.spread import NumberSpread, summed
 from heuncli.commands.sensitivity.spread_words import spreads_of
 from heuncli.errors import Problem
 from heuncli.spec.source import text_in
@@ -80,7 +80,9 @@ def recipe_of(request: SensitivityRequest, path: str) -> Recipe:
     return Recipe(path, text_in(path), measures, options, overrides(request.set), request.case)
 
 
-def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: WrittenNumbers) -> list[WrittenNumber]:
+def asked_numbers(
+    names: Sequence[str], spreads: Sequence[NumberSpread], written: WrittenNumbers
+) -> list[WrittenNumber]:
     """The numbers that are named, and those with a spread; where there are none, all parameters."""
     found = {name: written.named(name) for name in names} | {each.number.name: each.number for each in spreads}
     numbers = [*found.values()] or list(written.all())
@@ -91,7 +93,7 @@ def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: Writ
 
 
 def findings(
-    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[Spread]
+    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[NumberSpread]
 ) -> MeasureFindings:
     """What one measure, by its place and its unit, hangs on."""
     ask = asking(once, which, {number.name: number for number in numbers})
@@ -100,7 +102,7 @@ def findings(
     return MeasureFindings(ask({}), slopes, total)
 
 
-def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> Derivative:
+def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> NoisyDerivative:
     """The derivative by one number; one that is 0 is taken to matter over its unit."""
     return derivative(lambda x: ask({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
 

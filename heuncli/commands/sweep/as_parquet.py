@@ -65,11 +65,18 @@ def parquet_pieces(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[bytes]
     schema = pa.schema(fields, metadata={"heun": json.dumps(_metadata(head))})
     sink, left = WrittenPart(), iter(rows)
     with pq.ParquetWriter(sink, schema) as writer:
-        while group := [columns.cells(row) for row in islice(left, GROUP)]:
-            arrays = [pa.array(cells, kind) for cells, kind in zip(zip(*group, strict=True), schema.types, strict=True)]
-            writer.write_table(pa.Table.from_arrays(arrays, schema=schema))
+        while (group := _group(pa, schema, columns, left)).num_rows:
+            writer.write_table(group)
             yield sink.handed_on()
     yield sink.handed_on()
+
+
+def _group(pa: Any, schema: Any, columns: SweepColumns, rows: Iterator[SweptRow]) -> Any:
+    """The next rows as a table; empty at their end."""
+    cells = [columns.cells(row) for row in islice(rows, GROUP)]
+    by_column = zip(*cells, strict=True) if cells else [()] * len(schema.types)
+    arrays = [pa.array(own, kind) for own, kind in zip(by_column, schema.types, strict=True)]
+    return pa.Table.from_arrays(arrays, schema=schema)
 
 
 def _types(pa: Any, columns: SweepColumns) -> list[Any]:

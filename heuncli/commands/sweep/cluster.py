@@ -19,13 +19,14 @@ from asyncio import CancelledError
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from itertools import chain
 from typing import Any
 
 from heuncli.cli.entry import UsageError
 from heuncli.commands.sweep.cluster_door import PATIENCE, ClusterGone, connected
 from heuncli.commands.sweep.cluster_lots import WORKERS, Lot, Lots
 from heuncli.commands.sweep.cluster_members import Member, Members, Task, named
-from heuncli.commands.sweep.cluster_worker import PartAnswered, Variant
+from heuncli.commands.sweep.cluster_worker import PartAnswered, Variant, in_words
 from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import Problem
 from heuncli.variants.asking import Answer, Recipe
@@ -35,7 +36,8 @@ from heuncli.version import VERSION
 
 LOOK = 1.0  # seconds from one look at who is there to the next
 LONGEST_WAIT = 600.0  # seconds without a worker
-MISSES = 5  # times that answers may fail to arrive from a worker that is there
+FETCH = 2.0  # seconds for the answers of a lot that is done
+MISSES = 10  # times that answers may fail to arrive from a worker that is there
 SAME_HEUN = f"the same heun on every worker: pip install heuncli=={VERSION}"
 Numbered = tuple[int, Answer]
 
@@ -54,7 +56,10 @@ def answers_of(
     many: how many numbers there are; tell: is given lines on workers; stopped: a descriptor, and what can be read there
     ends it. Raises UsageError: bad-option, no-dask, no-cluster, no-worker; ClusterGone.
     """
-    variants = ((number, plan.values(number)) for number in numbers)
+    first = next(numbers, None)
+    if first is None:  # nobody is needed
+        return
+    variants = ((number, plan.values(number)) for number in chain((first,), numbers))
     with connected(address) as client:
         sweeping = _Sweeping(client, address, with_files(recipe, plan), Lots(variants, many), tell)
         try:
@@ -128,7 +133,7 @@ class _Sweeping:
         try:
             gone = list(self.members.look())
         except Exception as error:
-            raise ClusterGone(self.address, f"the scheduler does not answer any more: {_words(error)}") from None
+            raise ClusterGone(self.address, f"the scheduler does not answer any more: {in_words(error)}") from None
         self.looked = now
         for lot in gone:
             yield from self._lost(lot)
@@ -194,13 +199,13 @@ class _Sweeping:
     def _finished(self, key: str, task: Task) -> Iterator[Numbered]:
         """The answers of a task that is done."""
         try:
-            found = task.future.result(timeout=PATIENCE)
+            found = task.future.result(timeout=FETCH)
         except (Exception, CancelledError) as error:  # its worker may be gone with them: seen at the next look
             self._require_connection()
             if task.misses < MISSES:
                 self.members.waits_on(key, task)
             else:
-                self._cannot(task, f"its answers do not arrive: {_words(error)}")
+                self._cannot(task, f"its answers do not arrive: {in_words(error)}")
             return
         if task.lot is None:
             version, able = found
@@ -210,6 +215,8 @@ class _Sweeping:
 
     def _answered(self, member: Member, lot: Lot, found: PartAnswered) -> Iterator[Numbered]:
         """The answers of a lot, or of its first variants."""
+        if found.broken:
+            self.members.refuse(member, f"it cannot solve the scene: {found.broken}")
         if found.answers:
             member.pace.took(len(found.answers), found.seconds)
         if found.lacking:
@@ -244,8 +251,4 @@ def _unable(error: BaseException | None) -> str:
     """Why a worker cannot, in words."""
     if isinstance(error, ModuleNotFoundError) and "heuncli" in str(error):
         return "there is no heun"
-    return f"it cannot be asked: {_words(error)}"
-
-
-def _words(error: BaseException | None) -> str:
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return f"it cannot be asked: {in_words(error)}"

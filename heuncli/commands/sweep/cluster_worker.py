@@ -15,8 +15,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from heuncli.cli.entry import contained
-from heuncli.errors import HeunError
+from heuncli.commands.sweep.workers import answer_of
 from heuncli.kernel.form import KERNEL
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.named_files import FileNotKept
@@ -36,12 +35,15 @@ class AbleWorker(NamedTuple):
 
 
 class PartAnswered(NamedTuple):
-    """The answers of the first variants of a batch, and what they took [s]; lacking: the file that the next one names,
-    where the recipe has it not."""
+    """The answers of the first variants of a batch, and what they took [s].
 
-    answers: tuple[Answer, ...]
-    seconds: float
+    lacking: the file that the next one names, where the recipe has it not; broken: why this worker answers nothing.
+    """
+
+    answers: tuple[Answer, ...] = ()
+    seconds: float = 0.0
     lacking: str = ""
+    broken: str = ""
 
 
 # What a worker is asked first, as text: with no heun there, no function of it could be sent.
@@ -108,27 +110,13 @@ class HeldRecipe:
 
 
 def answered(held: HeldRecipe, variants: Sequence[Variant], seconds: float) -> PartAnswered:
-    """The task of a worker: see HeldRecipe.answered."""
-    return held.answered(variants, seconds)
-
-
-def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
-    """What a variant answers: also where the memory ends, or heun itself is at fault. Raises FileNotKept."""
-    words = ("sweep", asker.recipe.path, *(f"{name}={text}" for name, text in values.items()))
-    lacking: list[FileNotKept] = []
-
-    def work() -> Answer:
-        try:
-            return asker.answer(values)
-        except FileNotKept as missing:
-            lacking.append(missing)
-            return Answer()
-
+    """The task of a worker: see HeldRecipe.answered. What is raised is told in words: Dask cannot send all of it."""
     try:
-        answer = contained(work, words)
-    except HeunError as error:
-        problem = error.problems[0]
-        return Answer(code=problem.code, reason=problem.message)
-    if lacking:
-        raise lacking[0]
-    return answer
+        return held.answered(variants, seconds)
+    except Exception as error:
+        return PartAnswered(broken=in_words(error))
+
+
+def in_words(error: BaseException | None) -> str:
+    """An exception on a line."""
+    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__

@@ -46,7 +46,7 @@ class ParameterColumn(NamedTuple):
 def parameters_of(plan: Plan) -> tuple[ParameterColumn, ...]:
     """The columns of what is varied."""
     drawn = plan.draws.laws if plan.draws is not None else ()
-    own = (ParameterColumn(axis.name, common_unit(axis.texts)) for axis in plan.axes)
+    own = (ParameterColumn(axis.name, common_unit(axis.texts)) for axis in (*plan.columns, *plan.axes))
     return (*own, *(ParameterColumn(law.name, law.unit) for law in drawn))
 
 

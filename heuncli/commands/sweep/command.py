@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
@@ -28,7 +27,7 @@ from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
-from heuncli.variants.axes import HINT, Drawn, ParameterAxis
+from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys
 from heuncli.variants.plans import Plan, plan_of
 from heuncli.variants.stated import unit_of
@@ -99,11 +98,20 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
 
 
 def given_by(request: SweepRequest, words: Sequence[str]) -> list[GivenAxis]:
-    """What is varied: the columns of a table, then the words. Raises UsageError, AxisError, SpecError."""
+    """What is varied: the columns of a table, then the words. Raises UsageError, SpecError."""
     if not words and request.variants is None:
         raise UsageError(Problem("bad-option", "sweep: nothing is varied", hint=f"{HINT}; or --variants FILE"))
     columns = axes_in(request.variants) if request.variants is not None else ()
-    return [*columns, *measure.all_or_errors([partial(of_word, word) for word in words])]
+    axes: list[GivenAxis] = []
+    problems: list[Problem] = []
+    for word in words:
+        try:
+            axes.append(of_word(word))
+        except AxisError as error:
+            problems += error.problems
+    if problems:
+        raise UsageError(*problems)
+    return [*columns, *axes]
 
 
 def plan_by(given: Sequence[GivenAxis], request: SweepRequest) -> Plan:

@@ -18,7 +18,10 @@ from heuncli.commands.sweep.told import Telling, tell
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 
-ALONE = ("words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance")
+ALONE = (
+    "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",
+    "samples", "seed", "indices",
+)  # fmt: skip
 
 
 def show(request: SweepRequest, how: Telling) -> int:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import islice
 
@@ -58,13 +58,13 @@ def answers_of(
 def answered(asker: Asker, plan: Plan, numbers: Sequence[int]) -> Answered:
     """The answers of some variants, whatever becomes of each."""
     begun = time.monotonic()
-    answers = tuple(answer_of(asker, plan, number) for number in numbers)
+    answers = tuple(answer_of(asker, plan.values(number)) for number in numbers)
     return Answered(answers, time.monotonic() - begun)
 
 
-def answer_of(asker: Asker, plan: Plan, number: int) -> Answer:
+def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
     """What a variant answers: also where the time is up, the memory ends, or heun itself is at fault."""
-    values, limit = plan.values(number), asker.recipe.options.time_limit
+    limit = asker.recipe.options.time_limit
     words = [asker.recipe.path, *(f"{name}={text}" for name, text in values.items())]
     try:
         return contained(lambda: alarm.limited(lambda: asker.answer(values), limit), ("sweep", *words))

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
 from heuncli.cli import alarm, jobs
 from heuncli.cli.entry import UsageError, contained
-from heuncli.commands.tune.results import Outcome, Reading
+from heuncli.commands.tune.results import Reading, TrialOutcome
 from heuncli.commands.tune.trials import TIME_LIMIT
 from heuncli.errors import HeunError, Problem
 from heuncli.study.ask.measure import NotOneNumber
-from heuncli.variants.asking import Answer, Asker, measured
+from heuncli.variants.asking import Answer, Asker, failed
 
 NO_NUMBER = "bad-option"  # the code of a measure that is not one number
 ALMOST = 1e-9  # s: what is left of a time limit that is reached
+WORTH = 0.02  # s: processes for shorter variants take longer to make than they save
 WORKER_DIED = "worker-died"
 
 
@@ -22,24 +24,27 @@ class Answering:
     """Answers some variants at once, in their order."""
 
     def __init__(self, asker: Asker, at_once: int | None) -> None:
-        """at_once: how many processes; None: this one."""
+        """at_once: how many processes; None: as many as there are processors, where a variant is worth it."""
         self.asker, self.at_once = asker, at_once
+        self.seconds = 0.0  # that the scene as it is took
 
-    def own(self) -> Outcome:
+    def own(self) -> TrialOutcome:
         """That of the scene as it is. Raises UsageError where a measure is not one number of it."""
+        begun = time.perf_counter()
         try:
-            study = self.asker.study({})
-            measures = tuple(measured(asked, study) for asked in self.asker.recipe.measures)
+            return outcome_of(self.asker.measured({}))
         except NotOneNumber as error:
             (problem,) = error.problems
             raise UsageError(problem) from None
         except HeunError as error:
             return outcome_of(failed(error))
-        return outcome_of(Answer(measures))
+        finally:
+            self.seconds = time.perf_counter() - begun
 
-    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[Outcome]:
+    def __call__(self, several: Sequence[Mapping[str, str]]) -> Iterator[TrialOutcome]:
         """The outcomes of variants, in the form of --set. Raises UsageError where a measure is not one number."""
-        at_once = 1 if self.at_once is None else jobs.how_many(self.at_once, len(several))
+        short = self.at_once is None and self.seconds < WORTH
+        at_once = 1 if short or len(several) == 1 else jobs.how_many(self.at_once, len(several))
         work: Callable[[Mapping[str, str]], Answer] = partial(answer_apart if at_once > 1 else answer, self.asker)
         for found in jobs.each(work, several, at_once, died):
             if found.code == NO_NUMBER:
@@ -69,13 +74,7 @@ def died(values: Mapping[str, str], how: str) -> Answer:
     return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how}")
 
 
-def failed(error: HeunError) -> Answer:
-    """The answer of a variant that could not be solved."""
-    problem = error.problems[0]
-    return Answer(code=problem.code, reason=problem.message)
-
-
-def outcome_of(found: Answer) -> Outcome:
+def outcome_of(found: Answer) -> TrialOutcome:
     """An answer as the search takes it."""
     readings = tuple(Reading(one.value, one.error, one.at, one.word) for one in found.measures)
-    return Outcome(readings, found.code, found.reason, found.warnings)
+    return TrialOutcome(readings, found.code, found.reason, found.warnings)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.commands.tune.request import TuneRequest
-from heuncli.commands.tune.results import Constraint, Goal, TuneTask, Variable
+from heuncli.commands.tune.results import Constraint, Goal, TunedVariable, TuneTask
 from heuncli.errors import Problem, SpecError
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
@@ -16,7 +16,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.variants.asking import Asker
 from heuncli.variants.axes import INTERVAL_HINT, AxisError, Interval, interval_of
-from heuncli.variants.conditions import FORM, HINT, Condition, condition_of, in_si
+from heuncli.variants.conditions import FORM, HINT, MeasureCondition, condition_of, in_si
 from heuncli.variants.stated import unit_of
 
 EACH = 200  # evaluations by default: for each variable, and once more
@@ -24,14 +24,14 @@ MOST_EVALUATIONS = 1_000_000
 LOOKED_AT = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which it is seen whether its values fit
 
 
-class Asked(NamedTuple):
+class AskedTuning(NamedTuple):
     """What is asked for, as far as the words alone tell."""
 
     path: str
     intervals: tuple[Interval, ...]
     goal: str
     greatest: bool
-    conditions: tuple[Condition, ...]
+    conditions: tuple[MeasureCondition, ...]
 
     @property
     def measures(self) -> tuple[MeasureRequest, ...]:
@@ -39,7 +39,7 @@ class Asked(NamedTuple):
         return tuple(measure.parse_all([self.goal, *(one.measure for one in self.conditions)]))
 
 
-def asked_by(request: TuneRequest) -> Asked:
+def asked_by(request: TuneRequest) -> AskedTuning:
     """What the words say. Raises UsageError, AxisError."""
     path, intervals = spec_and_intervals(request.words)
     goals = [(text, greatest) for text, greatest in ((request.minimise, False), (request.maximise, True)) if text]
@@ -49,7 +49,7 @@ def asked_by(request: TuneRequest) -> Asked:
         raise UsageError(Problem("bad-option", f"tune: {message}", hint=hint))
     ((goal, greatest),) = goals
     conditions = tuple(_constraint(text) for text in request.subject_to)
-    return Asked(path, tuple(intervals), goal, greatest, conditions)
+    return AskedTuning(path, tuple(intervals), goal, greatest, conditions)
 
 
 def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
@@ -68,14 +68,14 @@ def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
     return files[0], intervals
 
 
-def _constraint(text: str) -> Condition:
+def _constraint(text: str) -> MeasureCondition:
     condition = condition_of(text, FORM, HINT)
     if condition.sign == "=":
         raise AxisError(text, "a constraint has < or >: no two numbers are equal to the last bit", HINT)
     return condition
 
 
-def task_of(request: TuneRequest, asked: Asked, asker: Asker) -> TuneTask:
+def task_of(request: TuneRequest, asked: AskedTuning, asker: Asker) -> TuneTask:
     """The task, checked against the scene. Raises UsageError, AxisError, SpecError."""
     spec, measures = asker.spec, asker.recipe.measures
     measure.check(measures, spec)
@@ -111,12 +111,12 @@ def require_fit(interval: Interval, asker: Asker) -> None:
     raise errors[0]
 
 
-def variable_of(interval: Interval, spec: Spec) -> Variable:
+def variable_of(interval: Interval, spec: Spec) -> TunedVariable:
     """A variable with its value in the spec, if it is a parameter."""
     own = spec.parameters.get(interval.name)
     if own is not None and interval.unit:
         own = own / parse_unit(interval.unit)[0]
-    return Variable(interval.name, interval.low, interval.high, interval.unit, own)
+    return TunedVariable(interval.name, interval.low, interval.high, interval.unit, own)
 
 
 def most(request: TuneRequest, variables: int) -> int:

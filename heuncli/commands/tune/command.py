@@ -8,14 +8,14 @@ from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import require_other_file, same_file
-from heuncli.cli.output import emit, save, say
+from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
-from heuncli.cli.solving import overrides, tolerance
+from heuncli.cli.solving import overrides, tolerance, warn
 from heuncli.cli.target import format_of, require_room
 from heuncli.cli.units import say_what_stays, units
 from heuncli.commands.tune import page
 from heuncli.commands.tune.answering import Answering
-from heuncli.commands.tune.asked import Asked, asked_by, task_of
+from heuncli.commands.tune.asked import AskedTuning, asked_by, task_of
 from heuncli.commands.tune.history import to_csv
 from heuncli.commands.tune.request import FORMATS, TuneRequest
 from heuncli.commands.tune.results import TuneResults
@@ -23,8 +23,8 @@ from heuncli.commands.tune.study import Tuning
 from heuncli.commands.tune.told import TunedScene, block, line_to_paste
 from heuncli.commands.tune.trials import Trials
 from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.foreign_text import shown
 from heuncli.report.export import dump
+from heuncli.spec.models import Spec
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
@@ -54,10 +54,10 @@ def main(request: TuneRequest) -> int:
     text = dump(block(found, scene)) if form == "json" else page.write(found, scene, shown_in, request.output)
     emit(text, request.output, late=True)
     say_what_stays(request.units, form, request.quiet)
-    return leave(request, found)
+    return leave(request, found, spec)
 
 
-def require_sense(request: TuneRequest, asked: Asked) -> None:
+def require_sense(request: TuneRequest, asked: AskedTuning) -> None:
     """Raise UsageError where options do not go together, or numbers mean nothing."""
     if request.jobs is not None and request.jobs < 1:
         raise UsageError(Problem("bad-option", f"--jobs {request.jobs}: expected 1 or more", hint="such as --jobs 2"))
@@ -69,14 +69,14 @@ def require_sense(request: TuneRequest, asked: Asked) -> None:
         raise UsageError(Problem("bad-option", message, hint="name another file"))
 
 
-def recipe_of(request: TuneRequest, asked: Asked) -> Recipe:
+def recipe_of(request: TuneRequest, asked: AskedTuning) -> Recipe:
     """What every variant is made of. Raises UsageError, SpecError."""
     options = Options(tolerance=tolerance(request.tolerance), reduce=not request.no_reduce)
     measures = asked.measures
     return Recipe(asked.path, text_in(asked.path), measures, options, overrides(request.set), request.case)
 
 
-def searched(request: TuneRequest, asked: Asked, asker: Asker) -> Tuning:
+def searched(request: TuneRequest, asked: AskedTuning, asker: Asker) -> Tuning:
     """The search as far as it came. Raises UsageError, AxisError, SpecError; LimitError where nothing was solved."""
     task = task_of(request, asked, asker)
     answering = Answering(asker, request.jobs)
@@ -104,11 +104,11 @@ def require_answer(found: TuneResults) -> None:
         raise SolveError(Problem(code, message, hint="heun run --set with one of them tells more; or other bounds"))
 
 
-def leave(request: TuneRequest, found: TuneResults) -> int:
+def leave(request: TuneRequest, found: TuneResults, spec: Spec) -> int:
     """Tell the warnings of the best variant; returns the exit code."""
     assert found.best is not None
-    for text in found.best.outcome.warnings if not request.quiet else ():
-        say(f"warning: heun: {shown(text)}")
+    read = {problem.message for problem in spec.warnings}
+    warn(spec, None, request.quiet, later=[text for text in found.best.outcome.warnings if text not in read])
     if found.ending == "time":
         return LIMIT_REACHED
     return NOT_GOOD if request.strict and found.ending != "converged" else 0

@@ -8,6 +8,8 @@ passed by. What neither improves any more is a minimum, as far as either can tel
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from heuncli.commands.tune.results import Trial
@@ -16,7 +18,7 @@ from heuncli.results import Array
 
 FIRST, WIDEST, LEAST = 0.1, 0.1, 1e-4  # steps that a method begins with, of the width of the box
 SHRUNK = 0.1  # of the steps before, at least: what follows looks around as far as the last one moved, twice
-END = 1e-6  # of COBYLA's steps
+END, ABOVE_NOISE = 0.01, 3.0  # of COBYLA's steps: of the root of the floor; of the floor, at least
 NEAR = 1e-3  # of the simplex, whose corners lie as near to each other when it ends, and differ by less than the floor
 PLANES_EACH, CORNERS_EACH = 30, 40  # the most evaluations of one run, for each variable and one more
 WEIGHT, RAISED = (
@@ -26,16 +28,19 @@ WEIGHT, RAISED = (
 KEPT = 1e-4  # scales by which the best by merit may pass the constraints before the weight is raised
 AIM = 1e-7  # scales that the planes stay inside of the constraints: rounding is not to pass them
 MOST_RUNS = 40
+STILL, STILL_OF_MANY, FEW = 2, 4, 2  # runs in turn that gain nothing when it ends; how many variables are few: of more
+# the simplex may collapse along a kink, and does so less from its other sides
 
 
 def descend(trials: Trials) -> float | None:
-    """Improve the best until no method does; returns what the last two improved f by, None where it was not ended.
+    """Improve the best until no method does; returns what the last runs improved f by, None where it was not ended.
 
     Impure: tries variants.
     """
     trials.phase = "descent"
     weight, step = WEIGHT, FIRST
     gains: list[float] = []
+    still = STILL if len(trials.task.variables) <= FEW else STILL_OF_MANY
     for run in range(MOST_RUNS):
         own = weight if trials.feasible else None
         begin = least(trials, own)
@@ -52,8 +57,8 @@ def descend(trials: Trials) -> float | None:
         step = min(WIDEST, max(2.0 * moved, SHRUNK * step, LEAST))
         if own is not None and trials.passed(end) > KEPT:
             weight *= RAISED
-        elif len(gains) > 1 and max(gains[-2:]) < trials.floor and (own is None) is not trials.feasible:
-            return max(gains[-2:]) if trials.left else None
+        elif len(gains) >= still and max(gains[-still:]) < trials.floor and (own is None) is not trials.feasible:
+            return max(gains[-still:]) if trials.left else None
     return None
 
 
@@ -97,8 +102,13 @@ def by_planes(trials: Trials, begin: Trial, step: float, weight: float | None) -
     most = min(PLANES_EACH * (n + 1), trials.left + n + 2)
     minimize(
         goal, np.array(begin.place), method="COBYLA", bounds=[(0.0, 1.0)] * n, constraints=kept_to,
-        options={"rhobeg": step, "tol": END, "maxiter": most},
+        options={"rhobeg": step, "tol": min(last_step(trials.floor), step), "maxiter": most},
     )  # fmt: skip
+
+
+def last_step(floor: float) -> float:
+    """Where COBYLA ends: over a longer step a smooth valley falls by the floor, over a shorter one nothing is seen."""
+    return max(END * math.sqrt(floor), ABOVE_NOISE * floor)
 
 
 def by_simplex(trials: Trials, begin: Trial, step: float, weight: float | None, mirrored: bool) -> None:

@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from heuncli.commands.tune.results import Freedom, Move, Trial
+from heuncli.commands.tune.results import Leeway, Move, Trial
 from heuncli.commands.tune.trials import Trials
 
 HUNDREDTH = 0.01
@@ -21,10 +21,10 @@ NEAR = 0.8  # of the amount: so near to it from below a way is taken as met
 POWERS = (1.0, 2.0)  # of the way, between which the goal rises
 MOST = 7  # evaluations for one amount to one side
 MOST_TIMES, LEAST_POWER = 1e20, 0.1  # beyond which nothing is foretold
-STEEP = 0.5  # a rise by a lesser power of the way is a jump
+JUMPS, STEEP = 6.0, 0.5  # a rise by a higher power of the way is a jump within it; by a lesser one, before it
 
 
-def freedoms(trials: Trials, best: Trial) -> tuple[Freedom, ...]:
+def freedoms(trials: Trials, best: Trial) -> tuple[Leeway, ...]:
     """Of each variable. Impure: tries variants."""
     trials.phase = "freedom"
     floor, hundredth = trials.floor * trials.scale, HUNDREDTH * abs(best.goal)
@@ -33,7 +33,7 @@ def freedoms(trials: Trials, best: Trial) -> tuple[Freedom, ...]:
     for which in range(len(best.place)):
         down, up = (_Side(trials, best, which, way) for way in (-1.0, 1.0))
         wide = down.move(hundredth), up.move(hundredth)
-        found.append(Freedom((down.move(floor), up.move(floor)), wide))
+        found.append(Leeway((down.move(floor), up.move(floor)), wide))
     return tuple(found)
 
 
@@ -64,9 +64,13 @@ class _Side:
         low, high = self._around(amount)
         if low == self.room:
             return Move(self._in_unit(low), "bound")
-        if low == 0.0 and high not in self.why and not self._jumps(high):
-            return Move(self._in_unit(high), "less")
-        return Move(self._in_unit(low), self.why.get(high, "worse" if low else "jump"))
+        if high == math.inf:
+            return Move(self._in_unit(low), "worse" if self.gone[low] >= NEAR * amount else "more")
+        if high in self.why:
+            return Move(self._in_unit(low), self.why[high])
+        if self._jumps(low, high, amount):
+            return Move(self._in_unit(low), "jump")
+        return Move(self._in_unit(low), "worse") if low else Move(self._in_unit(high), "less")
 
     def _around(self, amount: float) -> tuple[float, float]:
         """The longest way that does not make it worse by the amount, before the shortest that does (infinite: none)."""
@@ -119,12 +123,13 @@ class _Side:
             self.gone[s] = self.trials.task.goal.sign * (trial.goal - self.best.goal)
         return True
 
-    def _jumps(self, least: float) -> bool:
-        """Whether the goal is worse at the shortest way that was gone as if it jumped, beside the next one."""
-        longer = min((s for s, worse in self.gone.items() if s > least and 0.0 < worse < math.inf), default=None)
-        if longer is None:
-            return False
-        return self.gone[least] > self.gone[longer] * math.pow(least / longer, STEEP)
+    def _jumps(self, low: float, high: float, amount: float) -> bool:
+        """Whether the goal jumps between a way on which it is not worse by an amount, and the next one."""
+        if low > 0.0:
+            before = self.gone[low] if self.gone[low] > 0.0 else amount
+            return math.log(self.gone[high] / before) > JUMPS * math.log(high / low)
+        longer = min((s for s, worse in self.gone.items() if s > high and 0.0 < worse < math.inf), default=None)
+        return longer is not None and self.gone[high] > self.gone[longer] * math.pow(high / longer, STEEP)
 
     def _in_unit(self, s: float) -> float:
         """A way in the unit of the variable."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.cli import terminal
-from heuncli.commands.tune.results import Freedom, Move, Reading, TuneResults
+from heuncli.commands.tune.results import Leeway, Move, Reading, TuneResults
 from heuncli.commands.tune.told import TunedScene
 from heuncli.foreign_text import shown
 from heuncli.report.digits import rough, style
@@ -19,7 +19,8 @@ MOVES = "MOVES  how far a variable may move alone, down and up, before the goal 
 MEASURES = "MEASURES  the goal first; left: to the limit, below 0 where it is passed"
 PASTED = "Its numbers, to the bit:"
 AT_BOUND = {"low": "lower bound", "high": "upper bound", "": ""}
-UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": ""}
+UNTIL = {"worse": "", "bound": " (bound)", "jump": " (jumps)", "less": "", "more": ""}
+BOUND_OF = {"less": "<", "more": ">"}
 LEFT: Align = "left"
 
 
@@ -46,6 +47,8 @@ def heading(found: TuneResults, scene: TunedScene, units: Units) -> Iterator[tup
     yield "", outcome(found, units)
     if not found.feasible:
         yield "", nearest(found, units)
+    if found.own_is_better:
+        yield "", "as it is, outside of the bounds, it is better"
     yield "", f"{len(found.history)} variants{unsolved(found)}"
 
 
@@ -112,7 +115,7 @@ def moves(found: TuneResults, units: Units) -> TextTable:
     return TextTable(MOVES, columns, tuple(rows))
 
 
-def _cells(freedom: Freedom) -> Iterator[str]:
+def _cells(freedom: Leeway) -> Iterator[str]:
     return (_move(one) for one in (*freedom.of_floor, *freedom.of_hundredth))
 
 
@@ -120,7 +123,8 @@ def _move(one: Move | None) -> str:
     """A way, to two digits, and what ends it."""
     if one is None:
         return "-"
-    return f"{'<' * (one.until == 'less')}{one.by:.2g}{UNTIL.get(one.until, f' ({one.until})')}"
+    by = f"{one.by:.2g}".replace("e-0", "e-")
+    return f"{BOUND_OF.get(one.until, '')}{by}{UNTIL.get(one.until, f' ({one.until})')}"
 
 
 def measures(found: TuneResults, units: Units) -> TextTable:

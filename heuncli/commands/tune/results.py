@@ -16,7 +16,7 @@ DIGITS = 9  # of a variable, beside the width of its interval: a thousandth of w
 Ending = Literal["converged", "evaluations", "time", "infeasible"]
 
 
-class Variable(NamedTuple):
+class TunedVariable(NamedTuple):
     """A parameter that may lie between two bounds, in its unit; own: its value in the spec, None where that is none."""
 
     name: str
@@ -87,7 +87,7 @@ class TuneTask:
     looked for; seed: of what is drawn.
     """
 
-    variables: tuple[Variable, ...]
+    variables: tuple[TunedVariable, ...]
     goal: Goal
     constraints: tuple[Constraint, ...] = ()
     most: int = 400
@@ -104,7 +104,7 @@ class Reading(NamedTuple):
     word: str = ""
 
 
-class Outcome(NamedTuple):
+class TrialOutcome(NamedTuple):
     """What a variant gave: readings of goal and constraints, or the code and the reason why there are none.
 
     warnings: of the run, in sentences.
@@ -122,7 +122,7 @@ class Trial(NamedTuple):
     number: int
     phase: str
     place: tuple[float, ...]
-    outcome: Outcome
+    outcome: TrialOutcome
 
     @property
     def solved(self) -> bool:
@@ -160,14 +160,15 @@ UNKNOWN = {
 class Move(NamedTuple):
     """How far a variable may move to one side before the goal is worse by some amount.
 
-    by: in its unit; until: `worse`, `bound`, `jump`, a constraint's words, a code; `less`: it is less than that.
+    by: in its unit; until: what ends the way, `worse`, `bound`, `jump`, a constraint's words or a code; or `less` and
+    `more`, where it is less or more than that.
     """
 
     by: float
     until: str
 
 
-class Freedom(NamedTuple):
+class Leeway(NamedTuple):
     """How far one variable may move, down and up: until the goal is worse by the floor, and by a hundredth of it."""
 
     of_floor: tuple[Move | None, Move | None] = (None, None)
@@ -185,14 +186,14 @@ class TuneResults:
     """
 
     task: TuneTask
-    own: Outcome
+    own: TrialOutcome
     history: tuple[Trial, ...]
     best: Trial | None
     feasible: bool
     ending: Ending
     gain: float | None
     floor: float
-    freedoms: tuple[Freedom, ...]
+    freedoms: tuple[Leeway, ...]
     active: tuple[bool, ...]
     scales: tuple[float, ...]
     failures: Mapping[str, int]
@@ -202,6 +203,15 @@ class TuneResults:
         """The values of the best variant, as --set takes them."""
         assert self.best is not None
         return texts_at(self.task.variables, self.best.place)
+
+    @property
+    def own_is_better(self) -> bool:
+        """Whether the scene as it is keeps all constraints, and is better than the best by more than the floor."""
+        assert self.best is not None
+        own = Trial(0, "", (), self.own)
+        if not own.solved or not all(map(Constraint.met, self.task.constraints, own.kept_to)):
+            return False
+        return not self.feasible or self.task.goal.sign * (self.best.goal - own.goal) > self.floor
 
     @property
     def nearest_unmet(self) -> int | None:
@@ -218,6 +228,6 @@ class TuneResults:
         return "low" if place <= 0.0 else "high" if place >= 1.0 else ""
 
 
-def texts_at(variables: tuple[Variable, ...], place: tuple[float, ...]) -> dict[str, str]:
+def texts_at(variables: tuple[TunedVariable, ...], place: tuple[float, ...]) -> dict[str, str]:
     """The values at a place, as --set takes them."""
     return {variable.name: variable.text(x) for variable, x in zip(variables, place, strict=True)}

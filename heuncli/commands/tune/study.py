@@ -18,7 +18,7 @@ import math
 from heuncli.commands.tune.descent import descend, try_from
 from heuncli.commands.tune.freedom import freedoms
 from heuncli.commands.tune.overview import OVERVIEW, look_over
-from heuncli.commands.tune.results import Ending, Freedom, Outcome, Trial, TuneResults
+from heuncli.commands.tune.results import Ending, Leeway, Trial, TrialOutcome, TuneResults
 from heuncli.commands.tune.trials import Trials
 
 APART = 0.2  # of the box: another minimum may lie as far from the best
@@ -29,11 +29,11 @@ ACTIVE = 1e-5  # scales: a constraint with less left over is one that holds the 
 class Tuning:
     """A search under way: whatever interrupts it, what was found so far can be told."""
 
-    def __init__(self, trials: Trials, own: Outcome) -> None:
+    def __init__(self, trials: Trials, own: TrialOutcome) -> None:
         """own: the scene as it is."""
         self.trials, self.own = trials, own
         self.gain: float | None = None
-        self.freedoms: tuple[Freedom, ...] = ()
+        self.freedoms: tuple[Leeway, ...] = ()
 
     def run(self) -> None:
         """Search. Impure: tries variants."""

@@ -6,9 +6,9 @@ import shlex
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.commands.tune.asked import Asked
+from heuncli.commands.tune.asked import AskedTuning
 from heuncli.commands.tune.history import best_by
-from heuncli.commands.tune.results import Freedom, Move, Outcome, Reading, Trial, TuneResults, texts_at
+from heuncli.commands.tune.results import Leeway, Move, Reading, Trial, TrialOutcome, TuneResults, texts_at
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.asking import Recipe
 from heuncli.version import VERSION
@@ -23,7 +23,7 @@ class TunedScene(NamedTuple):
     line: str
 
 
-def line_to_paste(asked: Asked, recipe: Recipe, found: TuneResults) -> str:
+def line_to_paste(asked: AskedTuning, recipe: Recipe, found: TuneResults) -> str:
     """The command whose measures are those of the best variant, to the bit."""
     words = ["heun", "run", recipe.path]
     if recipe.case is not None:
@@ -75,7 +75,7 @@ def variable(found: TuneResults, which: int) -> dict[str, Any]:
         "name": one.name, "unit": one.unit, "low": one.low, "high": one.high, "before": one.own,
         "value": one.value(found.best.place[which]), "active": found.at_bound(which) or None,
     }  # fmt: skip
-    freedom = found.freedoms[which] if found.freedoms else Freedom()
+    freedom = found.freedoms[which] if found.freedoms else Leeway()
     told["moves"] = {"floor": [*map(move, freedom.of_floor)], "hundredth": [*map(move, freedom.of_hundredth)]}
     return told
 
@@ -98,7 +98,7 @@ def constraint(found: TuneResults, which: int) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def reading(outcome: Outcome, which: int) -> dict[str, Any] | None:
+def reading(outcome: TrialOutcome, which: int) -> dict[str, Any] | None:
     """A measure; None where the variant could not be solved."""
     if not outcome.readings:
         return {"code": outcome.code, "reason": outcome.reason}

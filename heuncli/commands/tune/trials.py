@@ -15,10 +15,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.commands.tune.results import Outcome, Trial, TuneTask, texts_at
+from heuncli.commands.tune.results import Trial, TrialOutcome, TuneTask, texts_at
 from heuncli.results import Array
 
-Answers = Callable[[Sequence[Mapping[str, str]]], Iterable[Outcome]]
+Answers = Callable[[Sequence[Mapping[str, str]]], Iterable[TrialOutcome]]
 Tell = Callable[[int, int, str], None]
 TIME_LIMIT = "time-limit"  # the code of a variant that was not solved because the time is up
 SNAPPED = 1e-9  # of the width of a variable's interval: nearer to a bound is at it

@@ -16,6 +16,7 @@ from heuncli.shapes.by_component import largest, rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
+AT_FIRST = 32  # instants at which all points are looked at in any case
 ROUNDED_UP = 1.0 + 1e-9  # more than rounding makes of a distance
 
 
@@ -29,8 +30,9 @@ def motion_error(marks: Marks, bodies: Table, count: int, size: float) -> Array:
 def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
     """Bounds of that error (n,); it is the error itself where it is largest, and where it may pass CLAIMED.
 
-    A point is no farther apart than its body's joint point, and what the body has turned by times the longest arm. That
-    takes a tenth of a look at all points, and leaves few instants at which these are to be looked at.
+    A point is no farther apart than its body's joint point, and the longest arm times what the body has turned by. Two
+    attitudes Q R and R an angle θ apart differ by |(Q - 1) R a| <= 2 sin(θ/2) |a|, and all nine elements' squares add up
+    to 8 sin²(θ/2). That takes a tenth of a look at all points, and leaves few instants to look at these.
     """
     bodies = len(marks.reach)
     r, R = (rows(several.bodies[name]).reshape(bodies, -1, len(several.times)) for name in ("r", "R"))
@@ -38,7 +40,8 @@ def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: flo
     for k in range(count - 1):
         for other in range(k + 1, count):
             dr, dR = (x[..., other::count] - x[..., k::count] for x in (r, R))
-            off = np.sqrt((dr * dr).sum(axis=1)) + np.sqrt((dR * dR).sum(axis=1)) * marks.reach[:, None]
+            turned = np.sqrt(0.5 * (dR * dR).sum(axis=1)) + tolerances.SUM_ROUNDING
+            off = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
             np.maximum(apart, off.max(axis=0), out=apart)
     bound = ROUNDED_UP * (2.0 * (apart / size) + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
 
@@ -46,11 +49,15 @@ def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: flo
         own = several.bodies[(count * which[:, None] + np.arange(count)).ravel()]
         return motion_error(marks, own, count, size)
 
-    if not np.isfinite(bound).all():
+    if len(bound) <= AT_FIRST or not np.isfinite(bound).all():
         return error(np.arange(len(bound)))
-    most = float(error(np.argmax(bound, keepdims=True))[0])
-    which = np.flatnonzero(bound >= min(most, tolerances.CLAIMED))
-    bound[which] = error(which)
+    first = np.argpartition(bound, -AT_FIRST)[-AT_FIRST:]
+    exact = error(first)
+    bound[first] = 0.0
+    others = np.flatnonzero(bound >= min(float(exact.max()), tolerances.CLAIMED))
+    if len(others):
+        bound[others] = error(others)
+    bound[first] = exact
     return bound
 
 
@@ -77,6 +84,9 @@ def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0)
     several: answers of so many runs, instant by instant; first: the number of the one.
     """
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
+    if not turning and not layout.counters:
+        n = len(several.times) // count
+        return np.zeros(n), np.ones(n)
     angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
     own = angles[first::count]
     others = range(first + 1, count)

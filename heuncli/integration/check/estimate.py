@@ -267,5 +267,6 @@ def recovered_at(
         next_ = np.minimum(np.searchsorted(after, times, side="right"), len(after) - 1)
         later = np.where((times > before[next_]) & (times < after[next_]), after[next_], times)
     branches = run.branches_at(times) if run.branches.size else None
-    found = runner.recovered(later, states, branches=branches, causes=causes, holding=run.holding_at(times))
-    return replace(found, times=times)
+    holding = run.holding_at(times) if runner.layout.contacts else None
+    found = runner.recovered(later, states, branches=branches, causes=causes, holding=holding)
+    return found if later is times else replace(found, times=times)

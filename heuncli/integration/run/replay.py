@@ -80,11 +80,13 @@ def by_its_steps(moving: IntegratedScene, run: Trajectory, times: Array, step: I
 def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, times: Array) -> Array:
     """States (n_t, n') of what is integrated at instants within the steps from a kept record on to step `last`.
 
-    record: its place in `run.kept`. Raises SolveError where a step cannot be done again, as an implicit one.
+    record: its place in `run.kept`. The run takes over the polynomials that the steps make.
+    Raises SolveError where a step cannot be done again, as an implicit one.
     """
     first, state = int(run.kept.steps[record]), run.kept.records[record]
     given = Start(moving.layout.y0, math.inf, following=True)
-    kernel = KernelLoop(moving.layout, moving.workspace, run.method, times, last - first + 1, given)
+    count, keeping = last - first + 1, run.courses is not None
+    kernel = KernelLoop(moving.layout, moving.workspace, run.method, times, count, given, keeping=keeping)
     loop, after = kernel.loop, run.after_blows
     loop.stand(state)
     t = float(run.ends[first - 1]) if first else 0.0
@@ -103,6 +105,8 @@ def replayed(moving: IntegratedScene, run: Trajectory, record: int, last: int, t
         if (left_for := loop.advance(to + 1 - first, False, False)) in TROUBLE:
             code, message, hint = TROUBLE[left_for]
             raise SolveError(Problem(code, f"at t = {loop.t:.9g} s: {message}", hint=hint))
+        if run.courses is not None:
+            run.courses.take(first, *kernel.put_down_courses())
         t = loop.t
         first = to + 1
     return kernel.states()

@@ -178,8 +178,10 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
 
     def columns(results: Results) -> Array:
         values = find(results, path).values
-        is_open = np.isnan(values.reshape(len(values), -1)).any(axis=1)
-        open_at.extend(results.time[is_open & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
+        is_open = np.isnan(values)
+        if is_open.any():
+            left = is_open.reshape(len(values), -1).any(axis=1)
+            open_at.extend(results.time[left & ~np.isin(results.time, results.accuracy.get("unknown", []))][:1])
         # the square of a magnitude is smooth where the magnitude is zero
         if asked.of_vectors:
             values = np.einsum("...k,...k->...", values, values)

@@ -14,7 +14,8 @@ def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, stat
     """Beside the loads of joints and foundation their shares by cause, in place; about: the point of M_s, (3,)."""
     if "joints" in shown:
         for load in shares.joints:
-            shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
+            if load.joint.name in shown["joints"]:  # of single joints these alone are told
+                shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
     if "foundation" in shown:
         for keys, own in foundation_shares(mechanism, states, shares, about).items():
             at(shown["foundation"], keys)["shares"] = own

@@ -27,8 +27,10 @@ NumericLeaves = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]
 
 def require_finite(results: Results) -> Results:
     """The results, if all that is not open in them is finite. Raises SolveError with the first path that is not."""
-    at = np.asarray(results.accuracy.get("unknown", ()), dtype=float)
-    require_finite_blocks({name: getattr(results, name) for name in BLOCKS}, results.time, ~np.isin(results.time, at))
+    unknown = results.accuracy.get("unknown", ())
+    known = ~np.isin(results.time, unknown) if len(unknown) else np.ones(len(results.time), dtype=bool)
+    named = vars(results)
+    require_finite_blocks({name: named[name] for name in BLOCKS if len(named[name])}, results.time, known)
     return results
 
 
@@ -47,11 +49,11 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, known: Mask) 
 
 def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> NumericLeaves:
     """The arrays and numbers below a node of the results: their path, their value, the block they stand in."""
-    if isinstance(node, Mapping):
+    if isinstance(node, float | np.ndarray):
+        yield keys, node, block
+    elif isinstance(node, Mapping):
         for name, member in node.items():
             yield from leaves(member, (*keys, name), node)
-    elif isinstance(node, np.ndarray | float):
-        yield keys, node, block
     elif isinstance(node, list | tuple) and node and not isinstance(node[0], str):
         for i, member in enumerate(node):
             yield from leaves(member, (*keys, str(i)), block)

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from heuncli.errors import LimitError, Problem
 from heuncli.integration.run.step_records import KEPT
 from heuncli.records import record
-from heuncli.response import answer_sizes
+from heuncli.response import answer_kinds
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
 from heuncli.spec.models import ResultCondition
 from heuncli.study.model.setup import Setup
@@ -102,7 +102,7 @@ def numbers_at_an_instant(setup: Setup) -> float:
 def answer_count(setup: Setup) -> float:
     """How many numbers the kernel answers at an instant."""
     layout = setup.scene.layout
-    own = sum(kind.itemsize // 8 * count for kind, count in answer_sizes(layout).values())
+    own = sum(kind.itemsize // 8 * count for kind, count in answer_kinds(layout).values())
     causes = len(layout.tables["loads"]) + BESIDE_LOADS if SHARES in setup.asked.reports else 0
     return float(own + layout.n_state + causes * setup.runner.workspace.column_width)
 

@@ -127,7 +127,7 @@ def search(
     owner = np.repeat(np.arange(n), [len(group) for group in members])
     even = np.zeros(n, dtype=bool) if even is None else np.asarray(even, dtype=bool)
     largest = np.zeros(n)
-    np.maximum.at(largest, owner, np.nan_to_num(np.abs(values[:, column]), posinf=0.0).max(axis=0))
+    np.maximum.at(largest, owner, finite(np.abs(values[:, column]), 0.0).max(axis=0))
     least = tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest)
     asked = Targets(n, column, owner, least if errors is None else np.fmax(errors, least), even)
     found = highest(times, values, asked)
@@ -275,9 +275,16 @@ def _first(worth: Array, target: Indices, most: int) -> Mask:
     return chosen
 
 
+def finite(values: Array, infinite: float | None = None) -> Array:
+    """The values, with 0 for those that are none; infinite: what stands for what has no bound, by default the most."""
+    if np.isfinite(values).all():
+        return values
+    return np.nan_to_num(values, posinf=infinite)
+
+
 def _varies(values: Array) -> Mask:
     """Which columns have a peak worth a search."""
-    known = np.nan_to_num(values)
+    known = finite(values)
     varies: Mask = np.ptp(known, axis=0) > tolerances.CONSTANT * np.abs(known).max(axis=0)
     return varies
 

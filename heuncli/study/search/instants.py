@@ -9,7 +9,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array
 from heuncli.shapes.by_component import rows, squares
 from heuncli.study.model.setup import Setup
-from heuncli.study.search.extremes import distinct
+from heuncli.study.search.extremes import distinct, finite
 from heuncli.study.solve.history import History, resample
 
 WITHIN_STEP = (0.0, 0.23, 0.52, 0.77)  # of each step of the integrator: where it is looked at for extremes first
@@ -65,6 +65,6 @@ def turned_between(setup: Setup, history: History, grid: Array) -> Array:
     """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
     driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
     known = resample(setup.runner, history, grid) if driven else history.recovered
-    omega = np.sqrt(np.nan_to_num(squares(rows(known.bodies["omega"]))).max(axis=0, initial=0.0))
+    omega = np.sqrt(finite(squares(rows(known.bodies["omega"]))).max(axis=0, initial=0.0))
     omega = np.interp(grid, known.times, omega)
     return np.asarray(np.maximum(omega[1:], omega[:-1]) * np.diff(grid))

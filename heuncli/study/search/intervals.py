@@ -27,7 +27,7 @@ ROUNDED_UP = 0.26  # of a bend: a quarter, and more than rounding adds to it
 ROUGH = 0.2  # of the bend: a parabola that misses a value by more has met a kink, or a grid too coarse for it
 
 
-class Shape(NamedTuple):
+class Bends(NamedTuple):
     """Of intervals (m,): the bends of the two parabolas, and how each would go on from either side.
 
     left, right: κ of those with the neighbour before and behind; where one has no number, the other's. up, down: by how
@@ -39,9 +39,9 @@ class Shape(NamedTuple):
     up: Array
     down: Array
 
-    def some(self, which: Mask | Indices) -> Shape:
+    def some(self, which: Mask | Indices) -> Bends:
         """Of the intervals that are marked."""
-        return Shape(*(x[which] for x in self))
+        return Bends(*(x[which] for x in self))
 
 
 class Intervals(NamedTuple):
@@ -63,7 +63,7 @@ class Intervals(NamedTuple):
         t, f, doubt, rough, target, column = self
         return Intervals(t[which], f[which], doubt[which], rough[which], target[which], column[which])
 
-    def shape(self) -> Shape:
+    def shape(self) -> Bends:
         """How each bends and rises."""
         t, f = self.t.T, self.f.T
         w, rise = t[1:] - t[:-1], f[1:] - f[:-1]
@@ -73,9 +73,9 @@ class Intervals(NamedTuple):
             left = -square * (slope[1] - slope[0]) / (t[2] - t[0])
             right = -square * (slope[2] - slope[1]) / (t[3] - t[1])
             up, down = rise[0] * (w[1] / w[0]), -rise[2] * (w[1] / w[2])
-        return Shape(*completed(left, right), up, down)
+        return Bends(*completed(left, right), up, down)
 
-    def promise(self, shape: Shape) -> Array:
+    def promise(self, shape: Bends) -> Array:
         """The highest that may lie between b and c."""
         b, c = self.f[:, 1], self.f[:, 2]
         smooth = promised(b, c, shape.left, shape.right, self.doubt, shape.up, shape.down)
@@ -84,7 +84,7 @@ class Intervals(NamedTuple):
         kink = b + shape.up * meeting(c - b, shape.up, shape.down)
         return np.asarray(np.where(self.rough, np.fmax(smooth, kink), smooth))
 
-    def probe(self, shape: Shape) -> Array:
+    def probe(self, shape: Bends) -> Array:
         """Where to ask: at the summit of the mean parabola.
 
         Where the two have little in common: where the slopes on either side meet, as at a kink, else in the middle.
@@ -102,7 +102,7 @@ class Intervals(NamedTuple):
         share = np.minimum(np.maximum(share, NEAREST), 1.0 - NEAREST)
         return np.asarray(self.t[:, 1] + share * (self.t[:, 2] - self.t[:, 1]))
 
-    def divided(self, shape: Shape, at: Array, height: Array) -> Intervals:
+    def divided(self, shape: Bends, at: Array, height: Array) -> Intervals:
         """The two parts of each, divided at an instant whose height was asked; what is no number has none."""
         (ta, tb, tc, td), (a, b, c, d) = self.t.T, self.f.T
         share = (at - tb) / (tc - tb)

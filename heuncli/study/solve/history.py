@@ -215,11 +215,11 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
     times = np.array([at])
     holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
-    answers = runner.recovered(times, starts[0][None, :], causes=by_cause, holding=holding)
-    require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
-    require_motion(layout, answers)
     beside = interleaved(times, [start[None, :] for start in starts])
     both = runner.recovered(*beside, causes=by_cause, holding=holding)
+    answers = both.at(slice(0, 1))
+    require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
+    require_motion(layout, answers)
     errors = LoadErrors(setup, by_cause)
     errors.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for

@@ -73,8 +73,12 @@ class LoadErrors:
         same = same_rows(several, count) if self.setup.model["redundant"] else np.ones(len(asked), dtype=bool)
         if same.any() and not same.all():
             several, asked, before = several.at(np.repeat(same, count)), asked[same], before[same]
-        for i in range(0, len(asked), self.at_once(count)):
-            part = slice(i, i + self.at_once(count))
+        many = self.at_once(count)
+        if many >= len(asked):
+            self.add_part(several, asked, before)
+            return
+        for i in range(0, len(asked), many):
+            part = slice(i, i + many)
             self.add_part(several.at(slice(count * i, count * part.stop)), asked[part], before[part])
 
     def at_once(self, count: int) -> int:

@@ -1,0 +1,98 @@
+"""What a sample says of all that could be drawn: its intervals hold the truth as often as they claim to."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from numpy.random import Generator
+from scipy.stats import binom, norm
+
+from heuncli.results import Array
+from heuncli.variants.axes import Drawn
+from heuncli.variants.draws import draws_of
+from heuncli.variants.indices import sobol_indices
+from heuncli.variants.sampling import PERCENTS, SURE, Estimated, sampled
+
+SEEDS = 2000
+LEAST_SEEN = binom.ppf(1e-4, SEEDS, SURE) / SEEDS  # of so many true intervals fewer hold the truth once in 10,000 times
+Law = tuple[Callable[[Generator, int], Array], float, float, Callable[[float], float]]
+# How it is drawn, its mean, its deviation, its quantiles.
+LAWS: dict[str, Law] = {
+    "normal": (lambda rng, n: rng.normal(3.0, 2.0, n), 3.0, 2.0, norm(3.0, 2.0).ppf),
+    "uniform": (lambda rng, n: rng.random(n), 0.5, 12**-0.5, lambda p: p),
+    "exponential": (lambda rng, n: rng.exponential(1.0, n), 1.0, 1.0, lambda p: -math.log1p(-p)),
+}
+
+
+def holds(one: Estimated, truth: float) -> bool:
+    return (one.low is None or one.low <= truth) and (one.high is None or truth <= one.high)
+
+
+def shares(law: Law, n: int) -> tuple[float, float, list[float]]:
+    """How many of the intervals of mean, deviation and percentiles hold the truth."""
+    draw, mean, deviation, quantile = law
+    rng = np.random.default_rng(17)
+    hits = np.zeros(2 + len(PERCENTS))
+    for _ in range(SEEDS):
+        found = sampled(draw(rng, n))
+        assert found is not None
+        truths = [mean, deviation, *(quantile(0.01 * percent) for percent in PERCENTS)]
+        told = [found.mean, found.deviation, *(one for _, one in found.percentiles)]
+        hits += [holds(one, truth) for one, truth in zip(told, truths, strict=True)]
+    of_mean, of_deviation, *of_percentiles = (hits / SEEDS).tolist()
+    return of_mean, of_deviation, of_percentiles
+
+
+@pytest.mark.parametrize("n", [20, 100, 400])
+@pytest.mark.parametrize("law", ["normal", "uniform"])
+def test_intervals_hold_the_truth_as_often_as_they_say(law: str, n: int) -> None:
+    of_mean, of_deviation, of_percentiles = shares(LAWS[law], n)
+    assert min(of_mean, *of_percentiles) >= LEAST_SEEN
+    assert of_deviation >= LEAST_SEEN - 0.01  # Bonett's interval is one of many draws
+    assert max(of_mean, of_deviation) < 0.975  # nor are they wide for nothing
+
+
+def test_of_a_skew_law_what_the_docstring_says() -> None:
+    of_mean, of_deviation, of_percentiles = shares(LAWS["exponential"], 100)
+    assert min(of_percentiles) >= LEAST_SEEN and of_mean > 0.92 and of_deviation > 0.89
+
+
+@pytest.mark.parametrize(("law", "n"), [("uniform", 1024), ("lhs", 1024), ("sobol", 256)])
+def test_intervals_of_indices_hold_the_truth_as_often_as_they_say(law: str, n: int) -> None:
+    """Of x y + z, each between 0 and 1: variances 1/48, 1/48, 1/12 of each alone, 1/144 of x and y together."""
+    alone, both = np.array([1 / 48, 1 / 48, 1 / 12]), np.array([1 / 144, 1 / 144, 0.0])
+    variance = alone.sum() + 1 / 144
+    laws = [Drawn(name, law, 0.0, 1.0, "") for name in "xyz"]  # type: ignore[arg-type]
+    hits, seeds = np.zeros((3, 2)), 400
+    for seed in range(seeds):
+        x, y, z = draws_of(laws, n, seed, indices=True).values.T
+        found = sobol_indices((x * y + z).reshape(n, 5))
+        assert found is not None
+        hits += [
+            [holds(one.first, first / variance), holds(one.total, total / variance)]
+            for one, first, total in zip(found, alone, alone + both, strict=True)
+        ]
+    assert (hits / seeds).min() >= binom.ppf(1e-4, seeds, SURE) / seeds
+    if law == "uniform":
+        assert (hits / seeds).max() < 0.99
+
+
+def test_the_percentile_interval_is_that_of_the_binomial_law() -> None:
+    """Of 20 draws at most 5 lie below the median in 2.07 % of samples, at most 6 in 5.77 %: the 6th to the 15th."""
+    found = sampled(np.arange(1.0, 21.0))
+    assert found is not None
+    median = dict(found.percentiles)[50.0]
+    assert (median.value, median.low, median.high) == (10.5, 6.0, 15.0)
+    least = dict(found.percentiles)[1.0]
+    assert least.low is None and least.high is not None  # 20 draws do not bound the first per cent from below
+
+
+def test_few_numbers_have_no_interval() -> None:
+    assert sampled(np.array([1.0])) is None
+    found = sampled(np.array([1.0, 2.0]))
+    assert found is not None and found.mean.value == 1.5 and found.deviation.low is None
+    same = sampled(np.full(10, 3.0))
+    assert same is not None and same.deviation == Estimated(0.0, 0.0, 0.0) and same.mean == Estimated(3.0, 3.0, 3.0)

@@ -1,0 +1,50 @@
+"""What is held twice hangs on no load: counted without any it is the same, and so are the self-stresses of a pose."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from heuncli.integration.run.runner import ready
+from heuncli.kinetostatics.bodies import body_states
+from heuncli.mechanism.build import build, forms_of
+from heuncli.redundancy.count import counted, counted_without_loads
+from heuncli.redundancy.self_stress import self_stress
+from heuncli.spec.load import load
+from heuncli.tree.frame import without_loads
+from heuncli.tree.prepare import prepare
+from tests.shared.bits import bits
+from tests.shared.folders import SPECS
+
+# closed chains with forces, spread ones, torques, dampers, actuators, drives, laws in coordinates, a contact
+LOADED = (
+    "axle_loads", "bouncing_ball", "bricard", "cardan", "compressor", "crane_load", "crankshaft", "engine", "governor",
+    "overhang", "press", "table",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("name", LOADED)
+def test_loads_have_no_say_in_what_is_held_twice(name: str) -> None:
+    spec = load(SPECS / f"{name}.yaml")
+    scene, runner = ready(prepare(build(spec, forms_of(spec))))
+    drives = tuple(joint.drive.value for joint in scene.mechanism.joints if joint.drive is not None)
+    bare = counted_without_loads(without_loads(scene.layout), drives, runner.start_holding)
+    assert [*bits(bare)] == [*bits(counted(runner))]
+
+
+def test_self_stresses_are_taken_over_at_the_same_pose_alone() -> None:
+    spec = load(SPECS / "bricard.yaml")
+    scene, runner = ready(prepare(build(spec, forms_of(spec))))
+    known = counted(runner).here
+    assert known is not None
+    here = runner.recovered(np.zeros(1), scene.layout.y0[None, :])
+    states = body_states(scene.layout, here)
+    found = self_stress(runner, here, states, known)
+    assert found is known.stress
+    assert [*bits(found)] == [*bits(self_stress(runner, here, states))]
+    moved = scene.layout.y0.copy()
+    moved[0] += 1e-6
+    there = runner.recovered(np.zeros(1), moved[None, :])
+    assert self_stress(runner, there, body_states(scene.layout, there), known) is not known.stress
+    later = runner.recovered(np.ones(1), scene.layout.y0[None, :])
+    assert self_stress(runner, later, body_states(scene.layout, later), known) is not known.stress
