@@ -10,6 +10,7 @@ from array import array
 from functools import cache
 
 from heuncli.errors import Finding
+from heuncli.expressions.calculations import Operation, Source
 from heuncli.expressions.dimensions import COORDINATES, FACTOR, FREE, OF_TIME, Measure, combined, looked_up, loose
 from heuncli.expressions.programs import Code, Expression, Switch, TableFunction, outside
 from heuncli.kernel.choose import expressions
@@ -60,6 +61,7 @@ class Codegen:
         self.held: list[str] = []
         self.out_of_range: Finding | None = None  # a table at a constant outside its range: an error ...
         self.branches = False  # ... unless it may stand in a branch that is not chosen
+        self.sources: list[Source] | None = []  # of the constants; None: a choice hangs on one of them
 
     def finished(self, text: str, part: Part) -> Expression:
         """The expression that is this part. Raises Finding where it is constant and not finite."""
@@ -91,12 +93,25 @@ class Codegen:
         self.held.append(text)
         return (OP["hold"], len(self.held) - 1)
 
+    def is_written(self, part: Part) -> bool:
+        """Whether a number hangs on no parameter."""
+        if self.sources is None or part.constant is None:
+            return False
+        pending = [part.code[1]]
+        while pending:
+            source = self.sources[pending.pop()]
+            if isinstance(source, str):
+                return False
+            pending += source.operands if isinstance(source, Operation) else ()
+        return True
+
     def look_up(self, table: TableFunction, argument: Part, text: str) -> Part:
         """A table's value at the argument."""
         if table not in self.tables:
             self.tables.append(table)
         measure = looked_up(table.name, table.dimensions, argument.measure)
         operation = (OP["table"], self.tables.index(table), table.pieces, table.kind)
+        self.sources = None
         code = (*argument.code, *self.held_branch(text, argument.uses), *operation)
         if argument.constant is not None:
             value = self.looked_up(code, table)
@@ -110,6 +125,7 @@ class Codegen:
 
     def chain(self, first: Part, links: list[tuple[str, Part, Part, str]]) -> Part:
         """a < b < c as one condition, in which each part is run once; links: comparison, left, right, text."""
+        self.sources = None
         if all(part.constant is not None for _, left, right, _ in links for part in (left, right)):
             truth = self.number(1.0)
             for name, left, right, _ in links:
@@ -124,8 +140,11 @@ class Codegen:
             uses |= right.uses
         return self.counted(Part(code + (OP["mul"], 0) * (len(links) - 1), uses, is_truth=True, measure=FACTOR))
 
-    def number(self, value: float, measure: Measure = FACTOR) -> Part:
+    def number(self, value: float, measure: Measure = FACTOR, source: Source | None = None) -> Part:
+        """A number; source: where it comes from, if it is not as it is written."""
         self.constants.append(value)
+        if self.sources is not None:
+            self.sources.append(value if source is None else source)
         return self.counted(Part((OP["const"], len(self.constants) - 1), NOTHING, value, False, measure))
 
     def counted(self, part: Part) -> Part:
@@ -152,7 +171,9 @@ class Codegen:
         if not uses:
             operands = [part.constant for part in parts if part.constant is not None]
             program = operation(name, argument, len(operands))
-            return self.number(program.evaluate(0, len(operands) + 1, operands), measure)
+            length = len(operands) + 1
+            source = Operation(program, length, tuple(part.code[1] for part in parts))
+            return self.number(program.evaluate(0, length, operands), measure, source)
         if uses <= {0}:
             self.switch(name, parts)
         held = self.held_branch(text, uses) if text and name in BRANCHING else ()
@@ -160,7 +181,7 @@ class Codegen:
 
     def choose(self, condition: Part, then: Part, otherwise: Part, text: str = "") -> Part:
         """then where the condition is not 0, else otherwise; only the chosen one is run. text: of the condition."""
-        self.branches = True
+        self.branches, self.sources = True, None
         measure = combined("choose", (then.measure, otherwise.measure), strict=self.strict)
         if condition.constant is not None:
             if math.isnan(condition.constant):

@@ -11,11 +11,12 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping
-from functools import lru_cache
+from functools import lru_cache, partial
 from types import MappingProxyType
 from typing import Any
 
 from heuncli.errors import Finding
+from heuncli.expressions.calculations import Calculations
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.point_names import FORM, point_meant
@@ -97,6 +98,7 @@ class Scope:
     joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
     only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
+    calculations: numbers of parameters alone that were read before, in a spec whose names are the same.
     """
 
     parameters: Mapping[str, float | None] = NONE
@@ -106,6 +108,7 @@ class Scope:
     given: Mapping[str, GivenParameter] = NONE
     points: Mapping[str, Collection[str]] = NONE
     with_units: bool = False
+    calculations: Calculations | None = None
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -135,13 +138,27 @@ class Follows(Finding):
 def compile_expression(text: str, scope: Scope) -> Expression:
     """The expression a text means. Raises Finding."""
     require_length(text)
+    known = scope.calculations if not scope.with_units else None
+    found = known.again(text, scope.parameters, partial(dimension_in, scope)) if known is not None else None
+    if found is not None:
+        return found
     try:
-        return _Parser(text, scope).parse()
+        parser = _Parser(text, scope)
+        expression = parser.parse()
+        if known is not None and expression.constant is not None:
+            known.keep(text, expression, parser.codegen.sources, partial(dimension_in, scope))
+        return expression
     except Finding as finding:
         if finding.code != "wrong-dimension":
             raise
         hint = "; ".join(filter(None, [told_of(text, scope), finding.hint]))
         raise Finding(finding.code, f"'{text.strip()}' {finding.message}", hint) from None
+
+
+def dimension_in(scope: Scope, name: str) -> Dimension | None:
+    """The dimension of a parameter, if it has one."""
+    given = scope.given.get(name)
+    return given.dimension if given is not None else None
 
 
 def require_length(text: str) -> None:
@@ -376,6 +393,8 @@ class _Parser:
         exponent = self.unary()  # binds to the right: 2**-3**2
         self.nested -= 1
         n = exponent.constant
+        if not self.codegen.is_written(exponent):  # which operation it is hangs on it
+            self.codegen.sources = None
         measure = raised(part.measure, n, exponent.measure)
         if n is not None and n == int(n if math.isfinite(n) else 0.0) and 2.0 <= abs(n) <= LARGEST_POWER:
             whole = self.codegen.apply("power", part, argument=int(abs(n)))
@@ -553,7 +572,7 @@ class _Parser:
             if value is None:
                 raise Follows
             given = self.scope.given.get(name)
-            return self.codegen.number(value, known(given.dimension) if given is not None else FREE)
+            return self.codegen.number(value, known(given.dimension) if given is not None else FREE, name)
         if name in CONSTANTS:
             return self.codegen.number(CONSTANTS[name], loose(RATE) if name == "rpm" else FACTOR)
         if name == "t":

@@ -138,6 +138,9 @@ class Evaluator:
         """
         arrays = given | answers
         count, many = len(given["times"]), max(1, AT_ONCE // max(work_of(self.layout), 1))
+        if 0 < count <= many:
+            self.workspace.recover({name: values.reshape(-1) for name, values in arrays.items()}, not hold_rows, causes)
+            return
         for begin in range(0, count, many):
             part = {name: values[begin : begin + many] for name, values in arrays.items()}
             first = hold_rows and begin > 0  # the rows are chosen there, once more

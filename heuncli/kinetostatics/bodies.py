@@ -67,6 +67,8 @@ class BodyStates:
 
     def point_positions(self, bodies: Sequence[int], points: Sequence[Array]) -> list[Array]:
         """World positions of a point each of bodies, as of `point_position`."""
+        if len(bodies) == 1:
+            return [self.point_position(bodies[0], points[0])]
         own = [i for i, body in enumerate(bodies) if body != GROUND]
         of, q = [bodies[i] for i in own], np.array([points[i] for i in own]).reshape(-1, 3, 1)
         moving = self.x[:, of].swapaxes(0, 1) + (self.R[:, of].swapaxes(0, 1) @ q[:, None])[..., 0]
@@ -105,13 +107,13 @@ class CarriedStates(BodyStates):
     _gravity: Array
     _beside: Mapping[str, Array]
 
-    def __init__(self, table: Table, order: Sequence[int], gravity: Array, beside: Mapping[str, Array]) -> None:
+    def __init__(self, table: Table, order: list[int], gravity: Array, beside: Mapping[str, Array]) -> None:
         """table: the kernel's, tree order (accelerations less g); order: each body's place in it.
 
         beside: from the joint points to the origins and the centres, body axes, (n, 3) each.
         """
-        straight = list(order) == [*range(table.shape[1])]
-        self.__dict__.update(_table=table, _order=None if straight else list(order), _gravity=gravity, _beside=beside)
+        straight = order == [*range(table.shape[1])]
+        self.__dict__.update(_table=table, _order=None if straight else order, _gravity=gravity, _beside=beside)
 
     def __getattr__(self, name: str) -> Array:
         """What was not asked for before."""
@@ -162,11 +164,7 @@ def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array
     steady: axes (body axes) about which the spins of bodies do not change: d/dt (omega . a) = alpha . a = 0. What of it
     the kernel finds is rounding of a moment over the inertia about the axis, of a wire next to none.
     """
-    bodies = layout.mechanism.bodies
-    order = [layout.place[i] for i in range(len(bodies))]
-    reference = layout.reference[order]
-    beside = {"origin": -reference, "centre": np.array([b.center for b in bodies]) - reference}
-    states = CarriedStates(recovered.bodies, order, layout.mechanism.gravity, beside)
+    states = CarriedStates(recovered.bodies, layout.order, layout.mechanism.gravity, layout.beside)
     for i, axis in steady.items():
         n = states.R[:, i] @ axis
         states.alpha[:, i] -= np.sum(states.alpha[:, i] * n, axis=1, keepdims=True) * n

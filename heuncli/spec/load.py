@@ -9,6 +9,7 @@ from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.expressions.grammar import GivenParameter
 from heuncli.expressions.programs import TableFunction
 from heuncli.nearest import begin_file, did_you_mean
+from heuncli.records import replace
 from heuncli.spec import format as f
 from heuncli.spec.cases import CASES, faults, settings_of
 from heuncli.spec.document import Reader
@@ -136,9 +137,9 @@ class Loading:
         """The scene. Raises SpecError."""
         parameters, given = self.parameters()
         names = self.names()
-        scope = Scope(parameters, given=given)
+        scope = self.scope(parameters, given)
         tables = self.tables(scope)
-        in_time = Scope(parameters, names.joints, tables, in_time=True, given=given, points=names.points)
+        in_time = replace(scope, joints=names.joints, tables=tables, in_time=True, points=names.points)
         context = Context(scope, in_time, names.points)
         reader = self.reader(context)
         document = reader.document()
@@ -154,6 +155,10 @@ class Loading:
         source = self.source
         meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
         return self.meant(draft.document, meaning)
+
+    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
+        """The names that a number may use that is read once."""
+        return Scope(parameters, given=given)
 
     def meant(self, document: f.Document, meaning: Meaning) -> Spec:
         """The scene that the document means."""

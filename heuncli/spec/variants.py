@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any, cast
 
 from heuncli.errors import SourceLocation, SpecError
+from heuncli.expressions.calculations import Calculations
+from heuncli.expressions.grammar import GivenParameter
 from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import begin_file
@@ -155,6 +157,7 @@ class FirstReading(Loading):
         self.built: dict[str, KeptTable] = {}
         self.contexts: dict[bool, Context] = {}  # by whether values in time may be read by it
         self.verdicts: list[KeptVerdict] = []
+        self.calculations = Calculations()
         self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
         self.reached: dict[str, KeptMeaning] = {}
         self.below: dict[frozenset[Path_], list[Path_]] = {}
@@ -182,6 +185,10 @@ class FirstReading(Loading):
         self.given_parameters = self.block("parameters")
         self.known = evaluate_parameters(self.given_parameters)
         return self.known
+
+    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
+        """The names that a number may use that is read once; how it is calculated is kept."""
+        return replace(super().scope(parameters, given), calculations=self.calculations)
 
     def reader(self, context: Context) -> Reader:
         """A reader that keeps what it reads."""
@@ -238,16 +245,18 @@ class FirstReading(Loading):
 
     def fallen(self, changed: frozenset[Lookup]) -> list[tuple[str, Any]]:
         """Where lookups give something else: what is to be read again, by block and name; of a single block by it."""
-        if changed not in self.readings:
+        planned = self.readings.get(changed)
+        if planned is None:
             forget_many(self.readings)
             paths = [path for path, kept in self.entries.items() if not kept.lookups.isdisjoint(changed)]
             found = [(str(path[0]), path[1] if len(path) > 1 else None) if path else ("head", None) for path in paths]
-            self.readings[changed] = [one for one in dict.fromkeys(found) if one[0] in f.Document._fields]
-        return self.readings[changed]
+            planned = self.readings[changed] = [one for one in dict.fromkeys(found) if one[0] in f.Document._fields]
+        return planned
 
     def standing(self, differing: frozenset[Lookup]) -> Standing:
         """Which parts of the scene mean what they meant where something differs."""
-        if differing not in self.meant_still:
+        found = self.meant_still.get(differing)
+        if found is None:
             forget_many(self.meant_still)
             parts = {key for key, kept in self.meanings.items() if kept.lookups.isdisjoint(differing)}
             names = {block: getattr(self.draft.document, block) for block in f.Document._fields}
@@ -256,12 +265,13 @@ class FirstReading(Loading):
                 for block, entries in names.items()
                 if isinstance(entries, dict) and all((block, name) in parts for name in entries)
             }
-            self.meant_still[differing] = Standing(frozenset(parts), frozenset(blocks))
-        return self.meant_still[differing]
+            found = self.meant_still[differing] = Standing(frozenset(parts), frozenset(blocks))
+        return found
 
     def plan(self, differing: frozenset[Lookup]) -> Plan:
         """What stands of the rules' verdicts where something differs."""
-        if differing not in self.plans:
+        planned = self.plans.get(differing)
+        if planned is None:
             forget_many(self.plans)
             plan = [
                 (rule, kept.violations if kept.lookups is not None and kept.lookups.isdisjoint(differing) else None)
@@ -269,8 +279,8 @@ class FirstReading(Loading):
             ]
             told = [(rule, found) for rule, found in plan if found is None or found]
             reached = {path: kept.value for path, kept in self.reached.items() if kept.lookups.isdisjoint(differing)}
-            self.plans[differing] = Plan(told, reached)
-        return self.plans[differing]
+            planned = self.plans[differing] = Plan(told, reached)
+        return planned
 
     def places_in(self, paths: frozenset[Path_]) -> list[Path_]:
         """The places that stand at or below some paths."""
@@ -375,6 +385,12 @@ class LaterReading(Loading):
         """The parameters."""
         given = self.block("parameters")
         return evaluate_parameters(given, _unchanged(given, self.first.given_parameters, self.first.known))
+
+    def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
+        """The names that a number may use; where they are those of the first reading, what that has read is known."""
+        same_names = self.by_parameters and parameters.keys() == self.first.known.values.keys()
+        calculations = self.first.calculations if same_names else None
+        return replace(super().scope(parameters, given), calculations=calculations)
 
     def reader(self, context: Context) -> Reader:
         """A reader that takes entries from the first reading."""

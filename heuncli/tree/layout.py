@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from array import array
+from functools import cached_property
 
 import numpy as np
 
@@ -101,6 +102,17 @@ class Layout:
     def n_state(self) -> int:
         """Length of the state."""
         return len(self.y0)
+
+    @cached_property
+    def order(self) -> list[int]:
+        """The place of each body in the tree, bodies as in the spec."""
+        return [self.place[i] for i in range(len(self.mechanism.bodies))]
+
+    @cached_property
+    def beside(self) -> dict[str, Array]:
+        """From the joint points of the bodies, as in the spec, to their origins and centres, body axes, (n, 3) each."""
+        reference = self.reference[self.order]
+        return {"origin": -reference, "centre": np.array([body.center for body in self.mechanism.bodies]) - reference}
 
     @property
     def tree_freedoms(self) -> int:

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Sequence
-from statistics import NormalDist
 
 import numpy as np
 
@@ -29,7 +28,6 @@ from heuncli.variants.plans import MOST_VARIANTS, Draws
 BITS = 52  # of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
 JOINT = ("lhs", "sobol")
 LEAST = 0.5 * 2.0**-BITS  # of them
-STANDARD = NormalDist()
 SAMPLES_HINT = "such as --samples 1000"
 
 
@@ -128,5 +126,8 @@ def _by_law(law: Drawn, u: Array) -> Array:
     if law.law != "normal":
         found: Array = u * (law.b - law.a) + law.a  # in this order, as qmc.scale has it
         return found
+    from statistics import NormalDist  # some milliseconds
+
+    quantile = NormalDist(law.a, law.b).inv_cdf
     within = np.clip(u, LEAST, 1.0 - LEAST)  # a joint plan may have points at its ends, whose quantiles are infinite
-    return np.array([law.a + law.b * STANDARD.inv_cdf(x) for x in within.ravel().tolist()]).reshape(u.shape)
+    return np.array([quantile(x) for x in within.ravel().tolist()]).reshape(u.shape)

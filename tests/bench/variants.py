@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-import json
 import statistics
-import tempfile
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
-from heuncli.cli.entry import enter
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
+from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.variants.prepared import Variants
+from tests.bench.finds import finds
 from tests.shared.folders import ROOT, SPECS
 
 STARTERS = ROOT / "heuncli" / "starters"
-REPEATS = 31
+REPEATS, MEASURES = 31, 200
 
 
 class Case(NamedTuple):
@@ -41,16 +39,17 @@ CASES = (
     Case(STARTERS / "truss.yaml", "F", 1e4, "a load"),
     Case(STARTERS / "truss.yaml", "a", 2.0, "lengths of a loop"),
 )
-FINDS = (
-    ("rotor", "n=500:6000rpm", "max joints.right.radial = 0.2 kN"),
-    ("four_bar", "w=20:300rpm", "max abs joints.crank.drive = 1 Nm"),
-    ("ladder", "tilt=5:80deg", "first events.until.time = 1.2 s"),
-    ("engine", "n=1000:6000rpm", "max joints.wrist.force = 20 kN"),
+
+MEASURED = (
+    (CASES[0], MeasureRequest("max", "joints.pivot.force")),
+    (CASES[2], MeasureRequest("max", "joints.main.force")),
+    (CASES[5], MeasureRequest("max", "joints.left.force")),
+    (CASES[6], MeasureRequest("max", "joints.low.force")),
 )
 
 
 def variants() -> None:
-    """Print it, of all results and of one joint's loads alone; and what a search for one crossing takes."""
+    """Print it, of all results and of one joint's loads alone, and of one measure; and what a search takes."""
     print(f"{'':28s}{'all results [ms]':>26s}{'one joint [ms]':>26s}")
     print(f"{'':28s}{'fresh':>10s}{'door':>8s}{'read':>8s}{'fresh':>10s}{'door':>8s}{'read':>8s}")
     for case in CASES:
@@ -59,21 +58,24 @@ def variants() -> None:
         figures = [ms for options in (Options(wanted=frozenset(REPORTS)), one) for ms in costs(case, options)]
         columns = "".join(f"{ms:{10 if k % 3 == 0 else 8}.2f}" for k, ms in enumerate(figures))
         print(f"{case.path.stem + ' ' + case.what:28s}{columns}")
-    print(f"\n{'find':28s}{'crossings':>10s}{'runs':>8s}{'[ms]':>8s}")
-    for name, unknown, condition in FINDS:
-        crossings, runs, ms = search(name, unknown, condition)
-        print(f"{name + ' ' + unknown:28s}{crossings:10d}{runs:8d}{ms:8.1f}")
+    print(f"\n{'one measure of each, searched between the samples':58s}{'median':>8s}{'mean':>8s} [ms]")
+    for case, asked in MEASURED:
+        took = of_measure(case, asked)
+        title = f"{case.path.stem} {case.what}: {asked.how} {asked.path}"
+        print(f"{title:58s}{statistics.median(took):8.2f}{statistics.fmean(took):8.2f}")
+    finds()
 
 
-def search(name: str, unknown: str, condition: str) -> tuple[int, int, float]:
-    """How many crossings a search finds, in how many runs, and its processor time [ms], set-up and all."""
-    with tempfile.TemporaryDirectory() as folder:
-        out = Path(folder) / "found.json"
+def of_measure(case: Case, asked: MeasureRequest) -> list[float]:
+    """Processor time of each of some variants with one measure, as `heun run --set ... --measure` has it [ms]."""
+    prepared = Variants(case.path, measures=[asked.path])
+    found = []
+    for k in range(MEASURES):
+        values = {case.key: repr(case.value * (1.0 + 0.2 * k / MEASURES))}
         begun = time.process_time()
-        assert enter(["find", str(SPECS / f"{name}.yaml"), unknown, condition, "-o", str(out)]) == 0
-        ms = 1e3 * (time.process_time() - begun)
-        told = json.loads(out.read_text())
-    return len(told["crossings"]), told["runs"], ms
+        value(asked, prepared.solve(values))
+        found.append(1e3 * (time.process_time() - begun))
+    return found
 
 
 def costs(case: Case, options: Options) -> tuple[float, float, float]:

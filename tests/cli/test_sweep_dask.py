@@ -245,6 +245,13 @@ def test_addresses_at_which_there_is_nothing(heun: Heun, address: str, code: str
     assert hint.startswith("  hint: ")
 
 
+def test_processes_here_and_a_cluster_do_not_go_together(heun: Heun) -> None:
+    words = ("--measure", "energy.potential", "--jobs", "2", "--dask", "tcp://127.0.0.1:9")
+    done = heun("sweep", "hanging.yaml", "m=1,2", *words)
+    assert done.returncode == 2
+    assert done.stderr.startswith("heun: --jobs and --dask do not go together [bad-option]")
+
+
 def test_tls_without_certificates(heun: Heun, dask: DaskCluster) -> None:
     address = dask.address.replace("tcp:", "tls:")
     done = heun("sweep", "hanging.yaml", "m=1,2", "--measure", "energy.potential", "--dask", address)
@@ -257,7 +264,7 @@ def test_without_dask_the_extra_is_named(heun: Heun, monkeypatch: pytest.MonkeyP
     done = heun("sweep", "hanging.yaml", "m=1,2", "--measure", "energy.potential", "--dask", "tcp://127.0.0.1:9")
     assert done.returncode == 2
     assert done.stderr.splitlines() == [
-        "heun: --dask: the package distributed is not installed [no-dask]",
+        "heun: --dask: the package distributed is not installed [missing-extra]",
         '  hint: pip install "heuncli[dask]"',
     ]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import hashlib
+import importlib
 import importlib.util
 import io
 import json
@@ -197,6 +198,7 @@ def test_what_cannot_be_told_apart_is_marked_alike() -> None:
     plan = plan_of([axis("n=1,2,3,4")])
     lines = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 2.0, 1.5])).splitlines()
     assert [line.split()[3:] for line in lines[2:6]] == [["least"], ["least"], ["greatest"], []]
+    assert "1.0    n = 1 or 1 more  2.0       n = 3" in "\n".join(lines)
     flat = text_of(head_of(plan, "N"), rows_of(plan, [1.0, 1.0 + 1e-9, 1.0, 1.0]))
     assert "m0: the same in all variants, as far as their errors tell" in flat and "▁▁▁▁" in flat
     assert not any(word in line for line in flat.splitlines()[2:6] for word in ("least", "greatest"))
@@ -291,6 +293,7 @@ def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypat
 
 def test_statistics_take_floats_alone(tmp_path: Path) -> None:
     """Of each measure a value and an error, and the number of the variant: 24 bytes."""
+    importlib.import_module("scipy.special")  # whose code is no part of it
     plan = plan_of([], draws=draws_of([Drawn("d", "uniform", 0.0, 1.0, "")], 20_000))
     answer = Answer((Measured(1.5, 1e-9, 0.25),))
     rows = (SweptRow(k, plan.values(k), answer) for k in range(20_000))

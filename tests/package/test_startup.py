@@ -99,6 +99,24 @@ def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], t
     assert more <= loaded(*words, text=text)
 
 
+def test_a_sweep_does_without_what_clusters_need() -> None:
+    words = ("sweep", "-", "bodies.bar.angular_velocity.2=1,2", "--measure", "final energy.kinetic")
+    found = loaded(*words, text=BAR)
+    assert "heuncli.commands.sweep.running" in found
+    clusters = {"distributed", "dask", "tornado", "heuncli.commands.sweep.cluster", "heuncli.variants.files"}
+    assert not found & (clusters | STRANGE)
+
+
+def test_a_sweep_loads_only_what_it_is_asked_for() -> None:
+    measure = ("--measure", "final joints.right.force.z", "--jobs", "1", "-q")
+    words = ("sweep", str(ROOT / "specs" / "rotor.yaml"), *measure)
+    strange = STRANGE | {"pyarrow", "dask", "distributed", "statistics"}
+    assert not (loaded(*words, "n=1000,1500rpm") - loaded_by("numpy")) & strange
+    random = loaded(*words, "n=uniform(1000,1500)rpm", "--samples", "2")
+    assert "scipy.special" in random and "scipy.stats" not in random
+    assert "scipy.stats" in loaded(*words, "n=sobol(1000,1500)rpm", "--samples", "2")
+
+
 def test_what_is_said_to_be_left_out_exists() -> None:
     assert all(importlib.util.find_spec(name) for name in STRANGE | SHAPED | REDUNDANT | RARE)
 

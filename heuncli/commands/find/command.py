@@ -8,6 +8,7 @@ from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
+from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
@@ -47,11 +48,10 @@ def main(request: FindRequest) -> int:
     measure.check([words.asked], asker.spec)
     require_other_file(request.output, [request.spec])
     condition = condition_of(words, at_ends(asker, interval))
-    once = AnswersOnce(asker)
-    found = look(
-        asking(once, interval, condition), interval.low, interval.high, condition.relation,
-        count=scan, most=most,
-    )  # fmt: skip
+    with progress(request.quiet) as tell:
+        once = AnswersOnce(asker, lambda runs: tell(min(runs, 2 * scan), 2 * scan, "variants"))
+        ask = asking(once, interval, condition)
+        found = look(ask, interval.low, interval.high, condition.relation, count=scan, most=most)
     require_some(found)
     own = shown if request.units else in_unit(shown, condition)
     page = FoundPage(asker.spec.title, condition, interval, found, scan, most, own)

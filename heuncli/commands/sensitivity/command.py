@@ -8,6 +8,7 @@ from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
+from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
@@ -27,6 +28,7 @@ from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+USUAL = 8  # variants for each number, mostly
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
 
@@ -45,12 +47,14 @@ def main(request: SensitivityRequest) -> int:
     numbers = asked_numbers(names, spreads, written)
     for number in numbers:
         asker.load({number.name: number.text(number.value)})  # a value of another dimension, or none that may be set
-    once = AnswersOnce(asker)
-    if once.of({}).code:
-        asker.study({})  # raises its own error, with its place
     texts = zip(request.measure, recipe.measures, strict=True)
     heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
-    found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
+    most = 1 + USUAL * len(numbers)
+    with progress(request.quiet) as tell:
+        once = AnswersOnce(asker, lambda runs: tell(min(runs, most), most, "variants"))
+        if once.of({}).code:
+            asker.study({})  # raises its own error, with its place
+        found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)

@@ -54,7 +54,7 @@ def answers_of(
     """Each number with its answer, as they come.
 
     many: how many numbers there are; tell: is given lines on workers; stopped: a descriptor, and what can be read there
-    ends it. Raises UsageError: bad-option, no-dask, no-cluster, no-worker; ClusterGone.
+    ends it. Raises UsageError: bad-option, missing-extra, no-cluster, no-worker; ClusterGone.
     """
     first = next(numbers, None)
     if first is None:  # nobody is needed

@@ -42,7 +42,7 @@ class ClusterGone(LimitError):
 
 @contextmanager
 def connected(address: str) -> Iterator[Any]:
-    """A client of the scheduler at an address. Raises UsageError: bad-option, no-dask, no-cluster."""
+    """A client of the scheduler at an address. Raises UsageError: bad-option, missing-extra, no-cluster."""
     host, port = host_and_port(address)
     distributed = _distributed()
     _require_listener(address, host, port)
@@ -103,7 +103,7 @@ def _distributed() -> Any:
         absent = isinstance(error, ModuleNotFoundError) and error.name == "distributed"
         why = "" if absent else f" ({error})"
         raise UsageError(
-            Problem("no-dask", f"--dask: the package distributed is not installed{why}", hint=INSTALL)
+            Problem("missing-extra", f"--dask: the package distributed is not installed{why}", hint=INSTALL)
         ) from None
     for name in LOGGERS:
         logging.getLogger(name).setLevel(logging.CRITICAL + 1)

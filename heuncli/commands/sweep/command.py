@@ -85,6 +85,9 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
     if request.jobs is not None and request.jobs < 1:
         message = f"--jobs {request.jobs}: expected 1 or more"
         raise UsageError(Problem("bad-option", message, hint="such as --jobs 2"))
+    if request.jobs is not None and request.dask is not None:
+        hint = "leave --jobs out: on a cluster as many work as there are workers"
+        raise UsageError(Problem("bad-option", "--jobs and --dask do not go together", hint=hint))
     options = Options(
         tolerance=tolerance(request.tolerance),
         method=request.method,

@@ -6,7 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from heuncli.commands.sweep.extremes import Extremes, extremes
+from heuncli.commands.sweep.extremes import BestAndWorst, extremes
 from heuncli.commands.sweep.gathered import GatheredRows
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.named_tuples import NamedTuple
@@ -20,7 +20,7 @@ class KeptRows(NamedTuple):
 
     rows: Mapping[int, SweptRow]
     gathered: GatheredRows
-    extremes: tuple[Extremes | None, ...]
+    extremes: tuple[BestAndWorst | None, ...]
 
     @property
     def size(self) -> int:

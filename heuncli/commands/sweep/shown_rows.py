@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.commands.sweep.columns import WORDS, ParameterColumn, parameters_of
-from heuncli.commands.sweep.extremes import Extremes
+from heuncli.commands.sweep.extremes import BestAndWorst
 from heuncli.commands.sweep.kept_rows import KeptRows
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, largest, style, trim
@@ -80,30 +80,40 @@ def with_gaps(places: Sequence[int], cells: Sequence[Sequence[str]], size: int) 
 
 def _measure(head: SweepHead, shown: KeptRows, k: int, units: Units) -> tuple[list[TextColumn], list[list[str]]]:
     """The columns of a measure, value, instant and mark, and their cells; without instants where all are the same."""
-    measure = head.measures[k]
+    measure, together = head.measures[k], f"measure {k}"
     unit, size = units.of(measure.unit)
-    columns = [TextColumn(f"{measure.text} [{unit}]" if unit else measure.text)]
+    columns = [TextColumn(f"{measure.text} [{unit}]" if unit else measure.text, vector=together)]
     scale = size * largest(shown.gathered.values(k))
     of_rows = [row.answer.measures[k] if row.answer.measures else Measured(None) for row in shown.rows.values()]
     cells = [[text] for text in trim([value_text(one, size, scale) for one in of_rows])]
     instants = {one.at for one in of_rows if one.at is not None}
     if len(instants) > 1:
-        columns.append(TextColumn("at [s]"))
+        columns.append(TextColumn("at [s]", vector=together))
         for line, one in zip(cells, of_rows, strict=True):
             line.append("" if one.at is None else f"{one.at:.5g}")
     best = shown.extremes[k]
     if best is not None and not best.flat:
-        columns.append(TextColumn("", "left"))
-        for line, place in zip(cells, shown.rows, strict=True):
-            line.append(mark(best, place))
+        marks = words(["", *(mark(best, place) for place in shown.rows)])
+        columns.append(TextColumn(marks[0], vector=together))
+        for line, text in zip(cells, marks[1:], strict=True):
+            line.append(text)
     return columns, cells
 
 
-def mark(best: Extremes, place: int) -> str:
+def words(cells: Sequence[str]) -> list[str]:
+    """A column of words, its head first, each as wide as the others: they stand left, and yet do not lead a line.
+
+    What leads a line is told again in every part of a table that is too wide (`page_width`).
+    """
+    width = max(map(len, cells))
+    return [cell.ljust(width) for cell in cells]
+
+
+def mark(best: BestAndWorst, place: int) -> str:
     """Whether a variant is the least or the greatest, or may be."""
-    if place in best.least_too:
+    if best.least_too[place]:
         return LEAST
-    return GREATEST if place in best.greatest_too else ""
+    return GREATEST if best.greatest_too[place] else ""
 
 
 def value_text(one: Measured, size: float, scale: float) -> str:

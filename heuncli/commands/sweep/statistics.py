@@ -39,6 +39,11 @@ class MeasureStatistics(NamedTuple):
     indices: tuple[SobolIndices, ...] | None = None
     samples: int = 0
 
+    @property
+    def flat(self) -> bool:
+        """Whether the measure varies by no more than the errors of its runs."""
+        return self.found is not None and not self.found.deviation.value > self.error
+
 
 def statistics_of(head: SweepHead, rows: GatheredRows) -> Iterator[MeasureStatistics]:
     """Of every combination and measure; none where nothing is drawn."""
@@ -74,10 +79,11 @@ def _of_one(
     error = float(errors.max(initial=0.0))
     found = sampled(known)
     made = MeasureStatistics(combination, measure, len(independent), len(independent) - len(known), found, error)
-    if each == 1 or found is None or not found.deviation.value > error:
+    if each == 1:
         return made
     whole = np.full(len(plan.draws.values), np.nan)
     whole[places] = values
     samples = whole.reshape(-1, each)
     samples = samples[np.isfinite(samples).all(axis=1)]
-    return made._replace(indices=sobol_indices(samples), samples=len(samples))
+    indices = None if found is None or made.flat else sobol_indices(samples)
+    return made._replace(indices=indices, samples=len(samples))

@@ -23,7 +23,9 @@ EVEN = "{} is more even than independent draws, for which the intervals are: the
 CALLED = {"lhs": "a Latin hypercube", "sobol": "a Sobol sequence"}
 SPOILT = "{}: the runs' own errors, up to {}, are not small beside these intervals"
 NOT_SHOWN = 0.1  # share of an interval that the runs' own errors may have untold
-NO_INDICES = "{}: no Sobol indices: it varies by no more than the errors of its runs, or is known of too few samples"
+NO_INDICES = "{}: no Sobol indices: "
+FLAT = "it varies by no more than the errors of its runs"
+FEW = "all {} variants of a sample are known of {} samples only"
 
 
 def tables_of(head: SweepHead, found: Sequence[MeasureStatistics], units: Units, all_of_them: bool) -> list[TextTable]:
@@ -103,7 +105,8 @@ def _indices(head: SweepHead, found: Sequence[MeasureStatistics], laws: Sequence
     notes: list[str] = ["first order: of the parameter alone; total: with all that it does together with others"]
     for one in found:
         if one.indices is None:
-            notes.append(NO_INDICES.format(label_of(head, one)))
+            why = FLAT if one.flat else FEW.format(len(laws) + 2, one.samples)
+            notes.append(NO_INDICES.format(label_of(head, one)) + why)
             continue
         rows.append(f"{label_of(head, one)}: {count(one.samples, 'sample')}")
         for law, of in zip(laws, one.indices, strict=True):

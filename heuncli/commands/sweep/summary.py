@@ -7,12 +7,13 @@ import numpy as np
 from heuncli.commands.sweep.columns import ParameterColumn, parameters_of
 from heuncli.commands.sweep.kept_rows import KeptRows
 from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.shown_rows import number_text, parameter_text
-from heuncli.report.digits import largest
+from heuncli.commands.sweep.shown_rows import number_text, parameter_text, words
+from heuncli.report.digits import largest, trim
 from heuncli.report.plurals import count
 from heuncli.report.sparkline import histogram, sparkline
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.results import Array
 from heuncli.variants.plans import Plan
 
 SPARK = 40  # letters of a line
@@ -22,15 +23,15 @@ HEADING = "MEASURES  least and greatest, and the variants that have them"
 
 def summary(head: SweepHead, shown: KeptRows, units: Units, by: str, all_of_them: bool) -> TextTable:
     """A line a measure; where there is more than one axis, a line for each combination of those before the last."""
-    columns = [TextColumn(one, "left") for one in ("measure", "least", "", "greatest", "", course_head(head.plan))]
-    rows: list[tuple[str, ...] | str] = []
+    rows: list[tuple[str, ...]] = [("measure", "least", "", "greatest", "", course_head(head.plan))]
     notes: list[str] = []
     for k, measure in enumerate(head.measures):
         unit, size = units.of(measure.unit)
         best = shown.extremes[k]
         ends = ["", "", "", ""]
         if best is not None:
-            ends = [text for place in (best.least, best.greatest) for text in _end(head, shown, k, place, size)]
+            of_both = ((best.least, best.least_too), (best.greatest, best.greatest_too))
+            ends = [text for place, too in of_both for text in _end(head, shown, k, place, too, size)]
         letters, left_out = courses(head.plan, shown, k, by, None if all_of_them else MOST_COURSES)
         rows.append((f"{measure.text} [{unit}]" if unit else measure.text, *ends, letters[0]))
         rows += [("", "", "", "", "", course) for course in letters[1:]]
@@ -38,7 +39,10 @@ def summary(head: SweepHead, shown: KeptRows, units: Units, by: str, all_of_them
             notes.append(f"{measure.text}: {count(left_out, 'line')} of letters more: --all")
         if best is not None and best.flat:
             notes.append(f"{measure.text}: the same in all variants, as far as their errors tell")
-    return TextTable(HEADING, tuple(columns), tuple(rows), tuple(notes))
+    heads, *cells = zip(*(words(column) for column in zip(*rows, strict=True)), strict=True)
+    vectors = ("", "least", "least", "greatest", "greatest", "")
+    columns = (TextColumn(head, vector=vector) for head, vector in zip(heads[1:], vectors[1:], strict=True))
+    return TextTable(HEADING, (TextColumn("measure", "left"), *columns), tuple(cells), tuple(notes))
 
 
 def course_head(plan: Plan) -> str:
@@ -50,12 +54,13 @@ def course_head(plan: Plan) -> str:
     return f"over {plan.axes[-1].name}" if plan.axes else ""
 
 
-def _end(head: SweepHead, shown: KeptRows, k: int, place: int, size: float) -> tuple[str, str]:
-    """An extreme, and the variant that has it."""
+def _end(head: SweepHead, shown: KeptRows, k: int, place: int, too: Array, size: float) -> tuple[str, str]:
+    """An extreme, and the variant that has it; too: which may have it as well."""
     values, errors = shown.gathered.values(k), shown.gathered.errors(k)
-    text = number_text(size * float(values[place]), size * float(errors[place]), size * largest(values))
-    number = int(shown.gathered.numbers[place])
-    return text, where(head.plan, parameters_of(head.plan), number)
+    (text,) = trim([number_text(size * float(values[place]), size * float(errors[place]), size * largest(values))])
+    at = where(head.plan, parameters_of(head.plan), int(shown.gathered.numbers[place]))
+    others = int(np.count_nonzero(too)) - 1
+    return text, f"{at} or {others} more" if others else at
 
 
 def where(plan: Plan, parameters: tuple[ParameterColumn, ...], number: int) -> str:
@@ -78,7 +83,8 @@ def courses(plan: Plan, shown: KeptRows, k: int, by: str, most: int | None) -> t
     best = shown.extremes[k]
     if best is not None and best.flat:
         limits = limits[0], limits[0]
-    present = np.unique(numbers // of_one)
+    combinations = numbers // of_one
+    present = combinations[np.diff(combinations, prepend=-1) > 0]
     lines = []
     for combination in present[:most].tolist():
         start = combination * of_one

@@ -30,9 +30,9 @@ def motion_error(marks: Marks, bodies: Table, count: int, size: float) -> Array:
 def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: float) -> Array:
     """Bounds of that error (n,); it is the error itself where it is largest, and where it may pass CLAIMED.
 
-    A point is no farther apart than its body's joint point, and the longest arm times what the body has turned by. Two
-    attitudes Q R and R an angle θ apart differ by |(Q - 1) R a| <= 2 sin(θ/2) |a|, and all nine elements' squares add up
-    to 8 sin²(θ/2). That takes a tenth of a look at all points, and leaves few instants to look at these.
+    A point is no farther apart than its body's joint point, and the longest arm times what the body has turned. Two
+    attitudes Q R and R an angle θ apart differ by |(Q - 1) R a| <= 2 sin(θ/2) |a|, and the squares of all nine elements
+    add up to 8 sin²(θ/2). That takes a tenth of a look at all points, and leaves few instants to look at these.
     """
     bodies = len(marks.reach)
     r, R = (rows(several.bodies[name]).reshape(bodies, -1, len(several.times)) for name in ("r", "R"))

@@ -38,7 +38,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wordin
         if not finite.all():
             raise SolveError(*not_finite(scene, recovered, int(np.flatnonzero(~finite)[0])))
         require_range(scene, recovered, np.maximum(moved.max(axis=1, initial=0.0), loads.max(axis=1, initial=0.0)))
-    for k in np.flatnonzero(recovered.idle > 0).tolist():
+    for k in np.flatnonzero(recovered.idle > 0).tolist() if recovered.idle.any() else ():
         from heuncli.integration.diagnosis.massless_motions import is_idle
 
         if not is_idle(scene, recovered, k):

@@ -26,7 +26,7 @@ from heuncli.results_schema import (
     spelled_first,
 )  # fmt: skip
 from heuncli.study.ask.study import Study
-from heuncli.study.search.extremes import ColumnSearch, no_columns
+from heuncli.study.search.extremes import BOTH, ColumnSearch, no_columns
 
 NOT_CLAIMED = "from t = {:.4g} s on nothing is claimed"
 
@@ -164,6 +164,9 @@ class Peak(NamedTuple):
     open_at: float | None = None
 
 
+SIDES = {"min": (-1.0,), "max": (1.0,), "abs": BOTH}
+
+
 def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
     """Highest (`max`), lowest (`min`) or largest (`abs`) value up to the horizon, between the samples too; where, when.
 
@@ -192,6 +195,8 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
     error = np.array([stated_error(study, asked.keys)])
     n = columns(study.results).shape[1]
     searched = ColumnSearch(columns, [list(range(n))], error, np.array([even]))
+    if not study.setup.scene.layout.rows:  # of closed chains it is told, too, where numbers are open on the other side
+        searched = searched._replace(sides=SIDES["max" if even and how == "abs" else how])
     if CUT in asked.axes:
         name = asked.keys[1]
         searched = searched._replace(

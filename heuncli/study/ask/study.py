@@ -195,7 +195,7 @@ class Study:
         sampled = StudyColumns(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
-            most=extremes.MOST_COLUMNS if whole else None,
+            most=extremes.MOST_COLUMNS if whole else None, sides=searched.sides,
         )  # fmt: skip
         found = sampled.placed(found)
         self.later_warnings.update(dict.fromkeys(left_out(sampled.unknown)))

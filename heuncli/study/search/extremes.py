@@ -30,12 +30,16 @@ SAME = 1e-4  # of an interval: how near two instants in it are asked as one; a s
 GOOD_ENOUGH = 0.1  # of a quantity's own error: what a higher summit is not looked for beyond
 
 
+BOTH = (-1.0, 1.0)
+
+
 class ColumnSearch(NamedTuple):
     """What a search is made of: columns of results, (n_t, n_columns), and groups of those that are compared.
 
     along: quantities of runs of cuts, each with the name of its run, (n_t, n_cuts); each is a group more. errors: of
     the groups' numbers, how well they are known; even: whether they are squares. bent: whether the quantities along
-    runs are no polynomials of the loads, as stresses.
+    runs are no polynomials of the loads, as stresses. sides: of which extremes there is use, -1 the lowest, 1 the
+    highest: between the samples no other is looked for.
     """
 
     columns: Callable[[Results], Array]
@@ -44,6 +48,7 @@ class ColumnSearch(NamedTuple):
     even: Mask
     along: Callable[[Results], Sequence[tuple[str, Array]]] | None = None
     bent: bool = False
+    sides: tuple[float, ...] = BOTH
 
 
 def no_columns(results: Results) -> Array:
@@ -110,12 +115,14 @@ def search(
     even: Mask | None = None,
     between: bool = True,
     most: int | None = None,
+    sides: tuple[float, ...] = BOTH,
 ) -> Extremes:
     """Extremes over the span of `times`, (n_t,) ascending, of what `sample` gives.
 
     groups: the columns that are compared with each other; by default each column is on its own. errors (n,): of each
     group's numbers, how well they are known; even (n,): whether its columns are their squares. between: whether the
-    instants between are looked at, too, for no more groups that vary than `most`; else the values at `times` stand.
+    instants between are looked at, too, for no more groups that vary than `most`, and for which sides; else the values
+    at `times` stand.
     """
     values = sample(times)
     members = [[column] for column in range(values.shape[1])] if groups is None else groups
@@ -136,7 +143,7 @@ def search(
     complete = True
     if between and len(times) > 1:
         first = AtFirst(len(times), float(np.ptp(times)))
-        complete = refined(sample, intervals_of(times, values, asked, found), asked, found, first)
+        complete = refined(sample, intervals_of(times, values, asked, found, sides), asked, found, first)
     value = np.repeat([-1.0, 1.0], n) * found.height
     at, column = found.at, found.column
     return Extremes(value[:n], at[:n], column[:n], value[n:], at[n:], column[n:], between, complete)
@@ -157,8 +164,10 @@ def highest(times: Array, values: Array, asked: Targets) -> Best:
     return Best(*(np.concatenate(both) for both in zip(*parts, strict=True)))
 
 
-def intervals_of(times: Array, values: Array, asked: Targets, found: Best) -> Intervals:
-    """The intervals of the grid that promise more than the best on it."""
+def intervals_of(
+    times: Array, values: Array, asked: Targets, found: Best, sides: tuple[float, ...] = BOTH
+) -> Intervals:
+    """The intervals of the grid that promise more than the best on it, on these sides."""
     step = np.diff(times)
     smooth = ~sides_of_jumps(times)
     heights = values[:, asked.column]
@@ -171,7 +180,8 @@ def intervals_of(times: Array, values: Array, asked: Targets, found: Best) -> In
     inner = np.concatenate([[False], smooth, [False]])
     to_beat = found.height + asked.enough(found.height)
     parts = []
-    for side, target in ((-1.0, owner), (1.0, owner + asked.n)):
+    for side in sides:
+        target = owner if side < 0.0 else owner + asked.n
         b, c, before, after, rising, falling = (side * x for x in (heights[:-1], heights[1:], left, right, up, down))
         with np.errstate(invalid="ignore"):
             k, j = np.nonzero((ceiling(b, c, most, rising, falling) > to_beat[target]) & smooth[:, None])

@@ -9,6 +9,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Mask
+from heuncli.shapes.by_component import rows
 
 
 class Weights(NamedTuple):
@@ -44,10 +45,10 @@ class Extent:
         asked, before = which
         if not values.size:
             return
-        count = len(values) // len(asked)
-        own = values[0::count]
-        size = lengths(own)
-        difference = reduce(np.maximum, [lengths(own - values[k::count]) for k in range(1, count)])
+        count, last = len(values) // len(asked), rows(values)
+        own = last[..., 0::count]
+        size = _lengths(own)
+        difference = reduce(np.maximum, [_lengths(own - last[..., k::count]) for k in range(1, count)])
         self.differ(difference if more is None else difference + more, before)
         self.rounding = _larger(self.rounding, rounding)
         self.terms = _larger(self.terms, terms)
@@ -81,10 +82,15 @@ def norms(vectors: Array) -> Array:
 
 def lengths(values: Array) -> Array:
     """The largest length of the vectors (n, ..., 3), or magnitude of the numbers (n,), at each instant."""
+    return _lengths(rows(values))
+
+
+def _lengths(values: Array) -> Array:
+    """The same of values with the instants last, (..., 3, n) or (n,)."""
     if values.ndim == 1:
         return np.abs(values)
-    squares = (values * values).sum(axis=-1).reshape(len(values), -1)
-    return np.asarray(np.sqrt(squares.max(axis=1)))
+    squares = (values * values).sum(axis=-2).reshape(-1, values.shape[-1])
+    return np.asarray(np.sqrt(squares.max(axis=0)))
 
 
 def _larger(so_far: float, values: Array) -> float:
