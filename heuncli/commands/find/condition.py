@@ -31,7 +31,7 @@ class ConditionWords(NamedTuple):
     value: str
 
 
-class Condition(NamedTuple):
+class FindCondition(NamedTuple):
     """A condition in SI, with the SI unit of its measure (empty: none); own: the unit in which the value was given."""
 
     text: str
@@ -55,7 +55,7 @@ def parsed(text: str) -> ConditionWords:
     return ConditionWords(words, measure.parse(words), relation, value)
 
 
-def condition_of(words: ConditionWords, specs: Sequence[Spec]) -> Condition:
+def condition_of(words: ConditionWords, specs: Sequence[Spec]) -> FindCondition:
     """The condition in SI, the same in all specs (those of the interval's ends). Raises UsageError."""
     unit = unit_of(words.asked.path, specs[0])
     dimension: Dimension | None = parse_unit(unit)[1] if unit and unit != "1" else (0, 0, 0)
@@ -70,7 +70,7 @@ def condition_of(words: ConditionWords, specs: Sequence[Spec]) -> Condition:
         message = f"the value '{words.value}' hangs on what is looked for"
         raise UsageError(Problem("bad-option", message, hint="give it as a number"))
     figure = figure_of(words.value)
-    return Condition(words.text, words.relation, values.pop(), unit, figure.unit if figure is not None else "")
+    return FindCondition(words.text, words.relation, values.pop(), unit, figure.unit if figure is not None else "")
 
 
 def _plain(text: str) -> float | str:

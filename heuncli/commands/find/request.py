@@ -24,11 +24,12 @@ class FindRequest(NamedTuple):
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     scan: Annotated[
-        int, Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N")
-    ] = 7
-    evaluations: Annotated[int, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")] = (
-        300
-    )
+        int | None,
+        Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N"),
+    ] = None
+    evaluations: Annotated[
+        int | None, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")
+    ] = None
     tolerance: Annotated[
         float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
     ] = None

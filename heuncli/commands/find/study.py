@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Literal
 
-from heuncli.commands.find.course import Course, Sample, SpentError
+from heuncli.commands.find.course import MeasureCourse, Sample, SpentError
 from heuncli.commands.find.places import doubtful, meetings, met, unsolved
 from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, Touch
 from heuncli.commands.find.search import refine_extreme, search
@@ -21,7 +21,7 @@ def look(
     ask: Callable[[float], Sample], low: float, high: float, relation: Relation, *, count: int, most: int
 ) -> CourseFindings:
     """What is found between low and high; count: places of the scan, most: that may be asked in all."""
-    course = Course(ask, low, high, count, most)
+    course = MeasureCourse(ask, low, high, count, most)
     complete, refined = True, False
     try:
         search(course)
