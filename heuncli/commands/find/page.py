@@ -7,9 +7,8 @@ import io
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from heuncli.commands.find.condition import FindCondition
 from heuncli.commands.find.course import Sample
-from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, MetEdge, Touch
+from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, FindCondition, MetEdge, Touch
 from heuncli.commands.find.study import SIDES
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
