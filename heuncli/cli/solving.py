@@ -38,6 +38,15 @@ def overrides(words: Sequence[str]) -> dict[str, str]:
     return pairs
 
 
+def spec_among(words: Sequence[str], command: str, usage: str) -> tuple[str, list[str]]:
+    """The one word that names the spec's file, and those that say NAME=... of something. Raises UsageError."""
+    files = [word for word in words if "=" not in word]
+    if len(files) != 1:
+        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
+        raise UsageError(Problem("bad-option", f"{command}: {found}", hint=usage))
+    return files[0], [word for word in words if "=" in word]
+
+
 def positive(option: str, value: float | None) -> float | None:
     """The value if it is a positive number or not given."""
     if value is not None and not (math.isfinite(value) and value > 0.0):

@@ -34,7 +34,26 @@ LARGEST_POWER = 64  # whole powers up to this one are multiplied out
 
 CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
 ARITY: dict[str, tuple[int, int]] = {
-    **dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp log sqrt abs sign step".split(), (1, 1)),
+    **dict.fromkeys(
+        [
+            "sin",
+            "cos",
+            "tan",
+            "asin",
+            "acos",
+            "atan",
+            "sinh",
+            "cosh",
+            "tanh",
+            "exp",
+            "log",
+            "sqrt",
+            "abs",
+            "sign",
+            "step",
+        ],
+        (1, 1),
+    ),
     "atan2": (2, 2),
     **dict.fromkeys(("min", "max", "hypot"), (2, MOST_NODES)),
     "table": (2, 2),

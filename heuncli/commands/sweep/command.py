@@ -8,7 +8,7 @@ from heuncli.cli import jobs, measure, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
-from heuncli.cli.solving import overrides, positive, tolerance
+from heuncli.cli.solving import overrides, positive, spec_among, tolerance
 from heuncli.cli.target import format_of, require_room
 from heuncli.cli.units import units
 from heuncli.commands.sweep.checks import problems_of, warnings_of
@@ -42,7 +42,7 @@ def main(request: SweepRequest) -> int:
     how = telling_of(request)
     if request.show is not None:
         return show(request, how)
-    path, words = spec_and_axes(request.words)
+    path, words = spec_among(request.words, "sweep", USAGE)
     shard = shard_of(request.shard)
     _require_files(request, path)
     recipe = recipe_of(request, path)
@@ -67,15 +67,6 @@ def telling_of(request: SweepRequest) -> Telling:
     how = Telling(form, request.output, units(request.units), request.all)
     require_tellable(how)
     return how
-
-
-def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
-    """The spec's file, and what is varied. Raises UsageError."""
-    files = [word for word in words if "=" not in word]
-    if len(files) != 1:
-        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"sweep: {found}", hint=USAGE))
-    return files[0], [word for word in words if "=" in word]
 
 
 def recipe_of(request: SweepRequest, path: str) -> Recipe:

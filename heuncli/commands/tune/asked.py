@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
+from heuncli.cli.solving import spec_among
 from heuncli.commands.tune.request import TuneRequest
 from heuncli.commands.tune.results import Constraint, Goal, TunedVariable, TuneTask
 from heuncli.errors import Problem
@@ -55,18 +56,15 @@ def asked_by(request: TuneRequest) -> AskedTuning:
 
 def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
     """The spec's file, and what is varied. Raises UsageError, AxisError."""
-    files = [word for word in words if "=" not in word]
-    if len(files) != 1:
-        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"tune: {found}", hint="heun tune SPEC NAME=LOW:HIGH --minimise WHAT"))
-    intervals = [interval_of(word) for word in words if "=" in word]
+    path, given = spec_among(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
+    intervals = [interval_of(word) for word in given]
     names = [interval.name for interval in intervals]
     if not names:
         raise UsageError(Problem("bad-option", "tune: nothing is varied", hint=INTERVAL_HINT))
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "one interval a parameter")
-    return files[0], intervals
+    return path, intervals
 
 
 def _constraint(text: str) -> MeasureCondition:
