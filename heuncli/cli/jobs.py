@@ -33,12 +33,17 @@ def forks() -> bool:
     return hasattr(os, "fork")
 
 
+def most(asked: int | None) -> int:
+    """How many processes may work at once."""
+    return asked if asked is not None else processors()
+
+
 def how_many(asked: int | None, things: int) -> int:
     """How many processes work: as many as asked for, else one a processor where there is enough to do."""
     if not forks():
         return 1
-    most = asked if asked is not None else processors() if things >= WORTH else 1
-    return max(1, min(most, things))
+    wanted = most(asked) if asked is not None or things >= WORTH else 1
+    return max(1, min(wanted, things))
 
 
 class Died(NamedTuple):
@@ -102,6 +107,7 @@ def as_done(
             yield from pool.answers(stopped)
         finally:
             pool.kill()
+            pool.join()
 
 
 class _Worker(Generic[Item, Answer]):
@@ -195,6 +201,11 @@ class _Pool(Generic[Item, Answer]):
         worker.at = None
         self._employ()
         return item, answer
+
+    def join(self) -> None:
+        """Wait until all of them have ended."""
+        for worker in self.workers:
+            worker.process.join()
 
     def kill(self) -> None:
         """End all of them at once."""

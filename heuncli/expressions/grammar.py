@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Collection, Mapping
-from functools import lru_cache, partial
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
@@ -21,6 +21,7 @@ from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.point_names import FORM, point_meant
 from heuncli.expressions.programs import POINTS, Expression, TableFunction
+from heuncli.expressions.tokens import tokens_of
 from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
 from heuncli.joint_kinds import RATES, TYPES
 from heuncli.named_tuples import NamedTuple
@@ -32,27 +33,11 @@ LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
 
 CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+OF_ONE_NUMBER = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
+)  # fmt: skip
 ARITY: dict[str, tuple[int, int]] = {
-    **dict.fromkeys(
-        [
-            "sin",
-            "cos",
-            "tan",
-            "asin",
-            "acos",
-            "atan",
-            "sinh",
-            "cosh",
-            "tanh",
-            "exp",
-            "log",
-            "sqrt",
-            "abs",
-            "sign",
-            "step",
-        ],
-        (1, 1),
-    ),
+    **dict.fromkeys(OF_ONE_NUMBER, (1, 1)),
     "atan2": (2, 2),
     **dict.fromkeys(("min", "max", "hypot"), (2, MOST_NODES)),
     "table": (2, 2),
@@ -83,11 +68,6 @@ LAWS = (
 )
 LIBRARIES = frozenset({"math", "np", "numpy", "sp", "Math"})  # whose functions are written with a dot elsewhere
 
-TOKEN = re.compile(
-    r"\s*+(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[^\W\d]\w*)|(?P<mark>\*\*|[<>=!]=|//|&&|\|\||\S))"
-)
-MOST_TEXTS = 1024  # whose tokens are kept: variants of a spec read the same ones again
-BEHIND = ("",) * 4  # as far as it is looked ahead
 NONE: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -178,13 +158,6 @@ def too_deep() -> Finding:
     """The error of an expression with too many parentheses within each other."""
     message = f"an expression nested more than {DEEPEST} deep"
     return Finding("expression-limit", message, "name its inner parts under parameters, or write it as a sum")
-
-
-@lru_cache(maxsize=MOST_TEXTS)
-def tokens_of(text: str) -> tuple[tuple[tuple[str, str, int], ...], tuple[str, ...], tuple[str, ...]]:
-    """The tokens of a text: kind, word and end of each; then kinds and words alone, empty ones after the last."""
-    found = tuple((one.lastgroup or "", one[one.lastgroup or 0], one.end()) for one in TOKEN.finditer(text))
-    return found, tuple(kind for kind, _, _ in found) + BEHIND, tuple(word for _, word, _ in found) + BEHIND
 
 
 class _Parser:

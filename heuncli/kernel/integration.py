@@ -350,6 +350,10 @@ class Integration:
                 self.output["courses"][k * run.n : (k + 1) * run.n] = run.track.courses[k]
         return code
 
+    def keep_no_more(self) -> None:
+        """Put down no polynomials any more."""
+        self.run.track.coursed = 0
+
     def fetch(self) -> None:
         """Bring the samples into `output` (compiled, they are written there)."""
         if not cython.compiled:

@@ -3,7 +3,9 @@
 While the spec is read for the first time, it is written down what every entry, table and rule looks up (lookups.py):
 names of parameters and of tables, types of joints, blocks of the document. With other values it is read by the same
 code; an entry whose data are as they were, and for which every lookup would give what it gave, is the entry that it
-was. So is a rule's verdict. What is kept is that of the first reading alone, so that no variant hangs on another one.
+was. So are a rule's verdict and what a part of the document means. What is kept is that of the first reading alone, so
+that no variant hangs on another one. Beside it stands what follows from it and is the same whoever asks first: what is
+to be done again for a set of lookups that differ, and how a number is calculated from parameters.
 Where anything is wrong with a variant, it is read once more with nothing kept, and its errors are those.
 
 Impure: reads the spec's file and those of its tables, when it is made; a table that a variant changes is read again.
@@ -116,14 +118,14 @@ class KeptVerdict(NamedTuple):
     lookups: frozenset[Lookup] | None
 
 
-class Standing(NamedTuple):
+class StandingParts(NamedTuple):
     """Parts of a scene that mean what they meant, by block and name; and the blocks of which all entries do."""
 
     parts: frozenset[tuple[str, Any]]
     blocks: frozenset[str]
 
 
-class Plan(NamedTuple):
+class VerdictPlan(NamedTuple):
     """Rules with what they found, None where that may be something else; and what paths into the results lead to."""
 
     verdicts: list[tuple[Rule, tuple[Violation, ...] | None]]
@@ -161,8 +163,8 @@ class FirstReading(Loading):
         self.meanings: dict[tuple[str, Any], KeptMeaning] = {}
         self.reached: dict[str, KeptMeaning] = {}
         self.below: dict[frozenset[Path_], list[Path_]] = {}
-        self.plans: dict[frozenset[Lookup], Plan] = {}
-        self.meant_still: dict[frozenset[Lookup], Standing] = {}
+        self.plans: dict[frozenset[Lookup], VerdictPlan] = {}
+        self.meant_still: dict[frozenset[Lookup], StandingParts] = {}
         self.readings: dict[frozenset[Lookup], list[tuple[str, Any]]] = {}
 
     def spec(self) -> Spec:
@@ -253,7 +255,7 @@ class FirstReading(Loading):
             planned = self.readings[changed] = [one for one in dict.fromkeys(found) if one[0] in f.Document._fields]
         return planned
 
-    def standing(self, differing: frozenset[Lookup]) -> Standing:
+    def standing(self, differing: frozenset[Lookup]) -> StandingParts:
         """Which parts of the scene mean what they meant where something differs."""
         found = self.meant_still.get(differing)
         if found is None:
@@ -265,10 +267,10 @@ class FirstReading(Loading):
                 for block, entries in names.items()
                 if isinstance(entries, dict) and all((block, name) in parts for name in entries)
             }
-            found = self.meant_still[differing] = Standing(frozenset(parts), frozenset(blocks))
+            found = self.meant_still[differing] = StandingParts(frozenset(parts), frozenset(blocks))
         return found
 
-    def plan(self, differing: frozenset[Lookup]) -> Plan:
+    def plan(self, differing: frozenset[Lookup]) -> VerdictPlan:
         """What stands of the rules' verdicts where something differs."""
         planned = self.plans.get(differing)
         if planned is None:
@@ -279,7 +281,7 @@ class FirstReading(Loading):
             ]
             told = [(rule, found) for rule, found in plan if found is None or found]
             reached = {path: kept.value for path, kept in self.reached.items() if kept.lookups.isdisjoint(differing)}
-            planned = self.plans[differing] = Plan(told, reached)
+            planned = self.plans[differing] = VerdictPlan(told, reached)
         return planned
 
     def places_in(self, paths: frozenset[Path_]) -> list[Path_]:

@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.cli import memory
 from heuncli.commands.sweep import workers
 from heuncli.variants.asking import Asker
 from tests.shared.command import Done, Heun
@@ -246,4 +247,19 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
             shown += os.read(control, 4096)
         process.kill()
     os.close(control)
-    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ s to go", shown), shown
+    assert re.search(rb"\d+ of 4000 variants, \S+ a second, .*\d+ (s|min) to go", shown), shown
+
+
+def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(
+    heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(memory, "_left", lambda: iter([2e6]))
+    done = sweep(heun, "analysis.samples=3,100001", "--jobs", "1")
+    assert [row["code"] for row in rows(done)] == ["", "too-much-memory"]
+
+
+def test_standard_input_is_a_spec_and_a_table(heun: Heun, scene: Path) -> None:
+    words = ("m=1,2kg", *FORCE, "--format", "csv")
+    assert heun("sweep", "-", *words, text=SCENE) == heun("sweep", "scene.yaml", *words)
+    table = heun("sweep", "scene.yaml", "--variants", "-", *FORCE, "--format", "csv", text="m [kg]\n1\n2\n")
+    assert table == heun("sweep", "scene.yaml", *words)

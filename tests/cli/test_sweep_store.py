@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import multiprocessing
+import os
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
+from multiprocessing.synchronize import Barrier
 from pathlib import Path
 
 import pytest
@@ -240,3 +243,24 @@ def test_without_a_store_the_folder_of_temporary_files_may_be_full() -> None:
                 store.keep(1, number, number.to_bytes(32, "big"), ("1.0",), Answer((Measured(1.0),)))
         assert error.value.exit_code == 5
         assert 0 < store.connection.execute("SELECT count(*) FROM answers").fetchone()[0] < 10_000
+
+
+@pytest.mark.heavy
+def test_a_store_that_many_begin_at_once_is_made_once(tmp_path: Path) -> None:
+    """Some look at it while others make it."""
+    context = multiprocessing.get_context("fork")
+    for attempt in range(15):
+        name, begins = str(tmp_path / f"{attempt}.sqlite"), context.Barrier(8)
+        processes = [context.Process(target=begin, args=(name, begins)) for _ in range(8)]
+        for process in processes:
+            process.start()
+        for process in processes:
+            process.join()
+        assert [process.exitcode for process in processes] == [0] * 8
+
+
+def begin(name: str, begins: Barrier) -> None:
+    """Open a store when all others do; the exit code is 1 where that fails."""
+    begins.wait()
+    with Store(name) as store:
+        store.keep(1, os.getpid(), os.urandom(32), ("1.0",), Answer((Measured(1.0),)))

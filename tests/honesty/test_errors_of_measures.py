@@ -12,7 +12,7 @@ from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
-from heuncli.variants.asking import measured
+from heuncli.variants.asking import Asker, Recipe, measured
 from heuncli.variants.stated import error_of, unit_of
 from tests.shared.folders import ROOT, SPECS
 
@@ -33,6 +33,17 @@ def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
         error = error_of(MeasureRequest("max", asked), Peak(1.0, 0.0), study)
         assert unit_of(asked, study.spec) == kept.unit, path
         assert math.isclose(error or 0.0, kept.error, rel_tol=1e-12), path
+
+
+@pytest.mark.heavy
+def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
+    """The least acceleration, −1.2 g, lies in the flat pose, around which the search looks at nothing."""
+    flat = SPECS / "flat_four_bar.yaml"
+    least, greatest = MeasureRequest("min", "coordinates.B.acceleration"), MeasureRequest("max", "coordinates.B.rate")
+    asker = Asker(Recipe(str(flat), flat.read_text(encoding="utf-8"), (least, greatest), Options(), {}))
+    beside, apart = asker.answer({"g": "10.466811241737235", "rate": "7.046032184352546"}).measures
+    assert beside.value is None and beside.word == "unknown"
+    assert apart.value is not None and apart.error is not None
 
 
 HANGING = """\

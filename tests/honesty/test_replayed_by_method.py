@@ -101,3 +101,16 @@ def test_a_run_hangs_on_no_other() -> None:
     runs = [setup.runner.trajectory(MotionTask([0.0, end], end / 4000, method=method_of("Euler"))) for _ in range(2)]
     assert runs[0].ends.tolist() == runs[1].ends.tolist()
     assert np.array_equal(runs[0].states, runs[1].states)
+
+
+def test_polynomials_of_very_long_runs_are_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond their room none are kept: steps are done again, with the same bits."""
+    runner, end = runner_of("chaotic 0")
+    asked = np.linspace(0.0, end, 301)
+    kept = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
+    monkeypatch.setattr("heuncli.integration.run.step_records.MOST_COURSES", 10)
+    left = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
+    assert kept.courses is not None and kept.courses.spans[:, 0].any()
+    assert left.courses is None
+    times = looked_at(kept)
+    assert np.array_equal(runner.resample(left, times), runner.resample(kept, times))

@@ -15,12 +15,12 @@ from heuncli.report.export import MOST_NUMBERS
 from heuncli.spec import format as f
 from heuncli.spec.entries import NEEDED as NO_DEFAULT
 from heuncli.spec.entries import Entry, Field
+from heuncli.spec.named_files import LARGEST as LARGEST_TABLE
 from heuncli.spec.resolve import DEFAULT_TOLERANCE
 from heuncli.spec.rules.analysis import LONGEST as LONGEST_RUN
 from heuncli.spec.rules.sections import MOST_CUTS
 from heuncli.spec.semantics import DEFAULT_SAMPLES, MOST_SAMPLES
 from heuncli.spec.source import LARGEST as LARGEST_SPEC
-from heuncli.spec.tables import LARGEST as LARGEST_TABLE
 from tests.manual.keys import ALL, CHAPTERS, INLINE, NEEDED, TOP, named_fields, pairs, top_keys, unit_of, words_of
 from tests.manual.tables import TABLES, Table
 from tests.shared.manual import TEXTS, tables_below

@@ -134,6 +134,27 @@ def test_values_are_the_same_to_the_bit_and_by_type() -> None:
     assert not same(object(), object())
 
 
+def test_idle_parameters_are_those_on_which_nothing_hangs(scene: Path) -> None:
+    """Neither by themselves nor by another parameter; what is expected does not count."""
+    scene.write_text(
+        SCENE.replace("g: 9.81}", "g: 9.81, spare: 2, twice: 2*spare, once: F, limit: 1}").replace("F*L", "limit")
+    )
+    variants = SpecVariants(scene)
+    names = ["L", "H", "F", "T", "g", "spare", "twice", "once", "limit", "bodies.long.points.a.0", "no"]
+    assert variants.idle(names) == {"spare", "twice", "once", "limit"}
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}-{path.stem}")
+def test_idle_parameters_change_nothing(path: Path) -> None:
+    variants = SpecVariants(path, checking=False)
+    parameters = variants.spec.parameters
+    for name in variants.idle([*parameters]):
+        other = variants.load({name: repr(1.001 * parameters[name] + 1e-3 * (parameters[name] == 0.0))})
+        for field in set(Spec._fields) - {"parameters", "expect", "locations", "warnings"}:
+            assert [*bits(getattr(other, field))] == [*bits(getattr(variants.spec, field))], (name, field)
+
+
 def test_what_an_entry_is_asked_for_is_written_down_field_by_field(scene: Path) -> None:
     document = SpecVariants(scene)._first.draft.document
     log = Log()

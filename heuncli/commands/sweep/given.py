@@ -8,6 +8,8 @@ from heuncli.errors import Problem, SourceLocation
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.axes import Drawn, ParameterAxis, axis_of, figure_of, text_of
 
+MOST_SAMPLES = 1000  # of an axis: each is read twice before the first variant runs
+
 
 class GivenColumn(NamedTuple):
     """A column of a table of variants: its file, where its head stands, and each of its cells (line, column from 1)."""
@@ -45,6 +47,8 @@ class GivenAxis(NamedTuple):
             if kind not in seen:
                 seen.add(kind)
                 found[text] = k
+                if len(found) >= MOST_SAMPLES:
+                    break
         return found
 
     def told(self, problem: Problem, k: int | None = None) -> Problem:

@@ -29,6 +29,7 @@ from heuncli.study.ask.measure import NotOneNumber
 from heuncli.variants.asking import Answer, Asker
 from heuncli.variants.keys import VariantKeys
 
+PAUSE = 0.1  # seconds from one line of progress to the next
 NO_NUMBER = ("bad-option", "unknown-path")  # codes of a measure that is no number of the scene
 
 
@@ -141,7 +142,7 @@ class Count:
 
     def __init__(self, of: int) -> None:
         self.of, self.there, self.answered, self.solved = of, 0, 0, 0
-        self.begun = time.monotonic()
+        self.begun = self.told = time.monotonic()
 
     @property
     def done(self) -> int:
@@ -155,7 +156,11 @@ class Count:
 
     def tell(self, tell: Tell) -> None:
         """How many of how many, how fast, and how long it will take."""
-        rate = self.answered / max(time.monotonic() - self.begun, 1e-9)
+        now = time.monotonic()
+        if now < self.told + PAUSE:
+            return
+        self.told = now
+        rate = self.answered / max(now - self.begun, 1e-9)
         left = (self.of - self.done) / rate
         tell(self.done, self.of, f"{self.done} of {self.of} variants, {rate:.3g} a second, {in_words(left)} to go")
 

@@ -60,15 +60,22 @@ def begun(connection: sqlite3.Connection, name: str, kept: bool) -> None:
 
 def require_own(connection: sqlite3.Connection, name: str, may_be_empty: bool = False) -> None:
     """See that a file is a store, of the tables of this version. Raises UsageError, sqlite3.Error."""
-    application = connection.execute("PRAGMA application_id").fetchone()[0]
+    connection.execute("BEGIN")  # one look at all of it, for another process may be making it
+    try:
+        is_empty = _is_empty(connection)
+        application, form = (
+            connection.execute(f"PRAGMA {of}").fetchone()[0] for of in ("application_id", "user_version")
+        )
+    finally:
+        if connection.in_transaction:
+            connection.execute("COMMIT")
     if application == APPLICATION:
-        form = connection.execute("PRAGMA user_version").fetchone()[0]
         if form != FORMAT:
             message = f"{name}: a store in form {form}, of another version of heun; this one has form {FORMAT}"
             raise UsageError(Problem(NOT_A_STORE, message, hint=OTHER))
         return
-    if not may_be_empty or not _is_empty(connection):
-        what = "it is empty" if _is_empty(connection) else "it is a database of another program"
+    if not may_be_empty or not is_empty:
+        what = "it is empty" if is_empty else "it is a database of another program"
         raise UsageError(Problem(NOT_A_STORE, f"{name}: this is no store of sweeps: {what}", hint=OTHER))
 
 

@@ -88,6 +88,11 @@ class KernelLoop:
         done = self.loop.done
         return self.passed[: done * self.width].reshape(done, self.width)[offset::every]
 
+    def keep_no_more(self) -> None:
+        """Put down no polynomials any more."""
+        self.keeping = False
+        self.loop.keep_no_more()
+
     def put_down_courses(self) -> tuple[Array, Array]:
         """What the steps just done left of their polynomials, (count, .) each: where they hold, and their numbers."""
         done = self.loop.done

@@ -106,7 +106,8 @@ class Steps:
         for rows, part in zip(self.courses, parts, strict=True):
             rows.add(part)
         if sum(rows.rows.size for rows in self.courses) > MOST_COURSES:
-            self.courses, kernel.keeping = None, False
+            self.courses = None
+            kernel.keep_no_more()
 
     def kept_courses(self) -> Courses | None:
         """The polynomials of all steps."""

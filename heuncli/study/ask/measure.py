@@ -195,14 +195,14 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
 
     error = np.array([stated_error(study, asked.keys)])
     n = columns(study.results).shape[1]
-    searched = ColumnSearch(columns, [list(range(n))], error, np.array([even]))
-    if not study.setup.scene.layout.rows:  # of closed chains it is told, too, where numbers are open on the other side
-        searched = searched._replace(sides=SIDES["max" if even and how == "abs" else how])
+    sides = SIDES["max" if even and how == "abs" else how]
+    searched = ColumnSearch(columns, [list(range(n))], error, np.array([even]), sides=sides)
     if CUT in asked.axes:
         name = asked.keys[1]
         searched = searched._replace(
-            columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent
-        )
+            columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent,
+            sides=BOTH,
+        )  # fmt: skip
     bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
     lower = how == "min" or (how == "abs" and abs(low) > abs(high))

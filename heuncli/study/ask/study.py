@@ -100,6 +100,11 @@ class Study:
         """The instants looked at since the run at which rounding beside a singular pose reaches some numbers."""
         return set(self.results.accuracy.get("unknown", ()))
 
+    @cached_property
+    def left_out(self) -> set[float]:
+        """The instants that searches for extremes left out, with what lies between them and their neighbours."""
+        return set()
+
     def impulses(self, setup: Setup | None = None) -> list[Block]:
         """The blocks of the blows; setup: with other cuts."""
         if self.struck is None:
@@ -192,12 +197,16 @@ class Study:
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
+        # of closed chains it is told, too, where numbers are open on the other side
+        one = searched.sides != extremes.BOTH and not self.setup.scene.layout.rows
+        sides = searched.sides if one else extremes.BOTH
         sampled = StudyColumns(self, searched, reports, self.stretched(searched.bent) if searched.along else None)
         found = extremes.search(
             sampled.columns, times, sampled.groups, errors=searched.errors, even=searched.even, between=between,
-            most=extremes.MOST_COLUMNS if whole else None, sides=searched.sides,
+            most=extremes.MOST_COLUMNS if whole else None, sides=sides,
         )  # fmt: skip
         found = sampled.placed(found)
+        self.left_out.update(sampled.unknown)
         self.later_warnings.update(dict.fromkeys(left_out(sampled.unknown)))
         if not found.complete:
             self.later_warnings[CUT_SHORT] = None
