@@ -22,12 +22,11 @@ from heuncli.errors import Finding, HeunError, Problem
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.quantity import FIGURE
-from heuncli.spec.source import BASED
 
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 MOST_VALUES = 10_000_000  # of one axis, which are kept as numbers
 
-QUANTITY = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")
+QUANTITY = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 EVENLY = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 DRAWN = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)
 FORMS = "NAME=a:b/count, NAME=a:b/count log, NAME=v1,v2,..., or NAME=normal(mean,deviation), uniform(a,b), lhs, sobol"
@@ -140,7 +139,7 @@ def at_top_level(text: str) -> list[str]:
 def figure_of(text: str) -> Figure | None:
     """The number and the unit of a text such as `20 mm`; None where it is no such text."""
     found = QUANTITY.match(text)
-    if found is None or BASED.match(text.strip()):  # the x of 0x32 is no unit
+    if found is None:
         return None
     value = float(found[1].replace(" ", ""))
     return Figure(value, (found[2] or "").strip()) if math.isfinite(value) else None
