@@ -61,7 +61,7 @@ class Courses:
         out = np.zeros(len(times) * n)
         flat = {"spans": self.spans.reshape(-1), "courses": self.numbers.reshape(-1)}
         integration.within(flat, n, array("d", times.tobytes()), array("i", step.astype(np.intc).tobytes()), out)
-        return out.reshape(-1, n)
+        return out.reshape(len(times), n)
 
 
 NOTHING_KEPT = Kept(np.zeros(0, dtype=int), np.zeros((0, 0)))

@@ -209,7 +209,7 @@ def test_the_time_limit_tells_the_best_so_far(heun: Heun) -> None:
         (["hanging.yaml", "m=1:2kg", "--minimise", "largest joints.pivot.force.z"], "expected [max | min"),
         (["swinging.yaml", "m=1:2kg", *WEIGHT], "say max, min"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z = 3"], "has < or >"),
-        (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z < 3 mm"], "'mm' is a length"),
+        (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z < 3 mm"], "'3 mm' is a length"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z"], "expected MEASURE"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivit.force.z < 3"], "[unknown-path]"),
         (["hanging.yaml", "m=1:2kg", *WEIGHT, "--evaluations", "0"], "expected 1 to"),

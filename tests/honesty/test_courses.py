@@ -16,7 +16,8 @@ from scipy.optimize import brentq
 
 from heuncli.commands.find.course import Sample
 from heuncli.commands.find.results import CourseFindings
-from heuncli.commands.find.study import Relation, look
+from heuncli.commands.find.study import look
+from heuncli.variants.conditions import Sign
 
 Function = Callable[[float], float]
 FINE = np.linspace(0.0, 1.0, 20_001)
@@ -78,7 +79,7 @@ def noisy(f: Function, error: float, seed: int, asked: list[float]) -> Callable[
     return ask
 
 
-def looked(f: Function, error: float, seed: int = 0, relation: Relation = "=", count: int = 7) -> CourseFindings:
+def looked(f: Function, error: float, seed: int = 0, relation: Sign = "=", count: int = 7) -> CourseFindings:
     asked: list[float] = []
     found = look(noisy(f, error, seed, asked), 0.0, 1.0, relation, count=count, most=400)
     assert found.complete and len(set(asked)) == len(asked) == len(found.samples)  # nothing is asked twice
@@ -127,7 +128,7 @@ def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
 
 @pytest.mark.parametrize("relation", ["<", ">="])
 @pytest.mark.parametrize("seed", range(40))
-def test_where_an_inequality_is_met(relation: Relation, seed: int) -> None:
+def test_where_an_inequality_is_met(relation: Sign, seed: int) -> None:
     """Everywhere in the stretches told, nowhere between them, but within the errors of their ends."""
     rng = np.random.default_rng([11, seed])
     f = two_waves(rng)
