@@ -93,11 +93,7 @@ class Certainty(NamedTuple):
 
 def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
-    scales: dict[tuple[str, str], float] = {}
-    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
-    for series in chain(walk(results, labels), struck):
-        key = (kind_of(series), series.unit)
-        scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    scales = scales_of(results, labels)
     errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
         for own in (kind, f"{kind} {BY_CAUSE}"):
@@ -118,6 +114,26 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
     return with_units(Certainty(errors, lost), labels.units)
+
+
+def scales_of(results: Results, labels: Labels, only: str | None = None) -> dict[tuple[str, str], float]:
+    """The largest magnitudes of a run by kind and unit, of its blows, too; only: of one kind."""
+    scales: dict[tuple[str, str], float] = {}
+    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
+    for series in chain(walk(results, labels), struck):
+        key = (kind_of(series), series.unit)
+        if only is None or key[0] == only:
+            scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    return scales
+
+
+def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float | None:
+    """The error of one kind of loads, as `certainty` has it of a state; None of what it finds otherwise."""
+    if kind not in LOADS or unit not in ("N", "N·m") or results.accuracy.get("horizon") is not None:
+        return None
+    own = _of_wrench(kind, _relative(results, kind), scales_of(results, labels, kind), of.size)
+    found = {**own, **of.errors}
+    return max(found[kind, unit], lost_by_rounding(of).get(unit, 0.0))
 
 
 def with_units(certain: Certainty, units: Units) -> Certainty:

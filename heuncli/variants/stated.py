@@ -6,10 +6,9 @@ import math
 from collections.abc import Sequence
 
 from heuncli.records import replace
-from heuncli.report.digits import certainty, lost_by_rounding
+from heuncli.report.digits import certainty, error_of_load, lost_by_rounding
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
-from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
 from heuncli.run_places import words_of
 from heuncli.spec.models import Spec
@@ -42,7 +41,7 @@ def _unit(keys: Sequence[str], spec: Spec) -> str:
 
 def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     """The error of a measure, as tables and goldens state it; None where the run states none, as of what is counted."""
-    keys = find(study.results, asked.path).keys
+    keys = study.numbers(asked.path).keys
     if keys[0] == EVENTS:
         return _of_event(keys, peak, study)
     unit = _unit(keys, study.spec)
@@ -51,8 +50,11 @@ def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
-    certain = certainty(study.results, replace(labels_of(study.spec), units=SI), of)
-    return certain.error(kind, unit) or None
+    labels = replace(labels_of(study.spec), units=SI)
+    error = error_of_load(study.results, labels, of, kind, unit)
+    if error is None:
+        error = certainty(study.results, labels, of).error(kind, unit)
+    return error or None
 
 
 def _of_event(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:
