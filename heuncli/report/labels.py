@@ -95,13 +95,17 @@ class Labels:
         return force.type == "couple" or self._kind(force.joint).motions[:1] == ("turning",)
 
 
-def labels_of(spec: Spec) -> Labels:
-    """The labels of a loaded spec."""
+def labels_for_units(spec: Spec) -> Labels:
+    """As much of the labels of a loaded spec as its units hang on: joints and forces."""
     joints = {
         name: JointInfo(j.kind, _end(End(j.a, j.p, j.p_name)), _end(End(j.b, j.q, j.q_name)))
         for name, j in spec.joints.items()
     }
-    forces = {name: _force(force) for name, force in spec.forces.items()}
+    return Labels(joints, {name: _force(force) for name, force in spec.forces.items()})
+
+
+def labels_of(spec: Spec) -> Labels:
+    """The labels of a loaded spec."""
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
@@ -109,7 +113,8 @@ def labels_of(spec: Spec) -> Labels:
         name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
         for name, stop in spec.stops.items()
     }
-    return Labels(joints, forces, sections, stops, named)
+    own = labels_for_units(spec)
+    return Labels(own.joints, own.forces, sections, stops, named)
 
 
 def _force(force: Force) -> ForceInfo:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from heuncli.records import replace
 from heuncli.report.digits import certainty, error_of_load, lost_by_rounding
-from heuncli.report.labels import labels_of
+from heuncli.report.labels import labels_for_units
 from heuncli.report.table_units import Units
 from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
 from heuncli.run_places import words_of
@@ -35,7 +35,7 @@ def _unit(keys: Sequence[str], spec: Spec) -> str:
     if row is None or not row.units:
         return ""
     own = keys[2:] if keys[0] == BLOWS else keys
-    turns = len(row.units) > 1 and labels_of(spec).turns(own[0], own[1])
+    turns = len(row.units) > 1 and labels_for_units(spec).turns(own[0], own[1])
     return row.units[1 if turns else 0]
 
 
@@ -50,7 +50,7 @@ def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
-    labels = replace(labels_of(study.spec), units=SI)
+    labels = replace(labels_for_units(study.spec), units=SI)
     error = error_of_load(study.results, labels, of, kind, unit)
     if error is None:
         error = certainty(study.results, labels, of).error(kind, unit)
