@@ -127,10 +127,13 @@ def scales_of(results: Results, labels: Labels, only: str | None = None) -> dict
     return scales
 
 
-def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float | None:
-    """The error of one kind of loads, as `certainty` has it of a state; None of what it finds otherwise."""
-    if kind not in LOADS or unit not in ("N", "N·m") or results.accuracy.get("horizon") is not None:
-        return None
+def is_of_load(kind: str, unit: str) -> bool:
+    """Whether numbers are forces or moments of a kind whose error is one of the whole kind."""
+    return kind in LOADS and unit in ("N", "N·m")
+
+
+def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float:
+    """The error of one kind of loads, as `certainty` has it where there is no horizon."""
     own = _of_wrench(kind, _relative(results, kind), scales_of(results, labels, kind), of.size)
     found = {**own, **of.errors}
     return max(found[kind, unit], lost_by_rounding(of).get(unit, 0.0))
@@ -200,6 +203,9 @@ def _relative(results: Results, kind: str) -> float:
 
 def largest(values: Array) -> float:
     """The largest finite magnitude, 0 where there is none."""
+    whole = float(np.abs(values).max(initial=0.0))
+    if math.isfinite(whole):
+        return whole
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 

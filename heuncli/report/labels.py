@@ -96,16 +96,18 @@ class Labels:
 
 
 def labels_for_units(spec: Spec) -> Labels:
-    """As much of the labels of a loaded spec as its units hang on: joints and forces."""
-    joints = {
-        name: JointInfo(j.kind, _end(End(j.a, j.p, j.p_name)), _end(End(j.b, j.q, j.q_name)))
-        for name, j in spec.joints.items()
-    }
+    """What units hang on: of which kind joints and forces are; of a joint's ends the bodies alone."""
+    joints = {name: JointInfo(joint.kind, joint.a, joint.b) for name, joint in spec.joints.items()}
     return Labels(joints, {name: _force(force) for name, force in spec.forces.items()})
 
 
 def labels_of(spec: Spec) -> Labels:
     """The labels of a loaded spec."""
+    joints = {
+        name: JointInfo(j.kind, _end(End(j.a, j.p, j.p_name)), _end(End(j.b, j.q, j.q_name)))
+        for name, j in spec.joints.items()
+    }
+    forces = {name: _force(force) for name, force in spec.forces.items()}
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
@@ -113,8 +115,7 @@ def labels_of(spec: Spec) -> Labels:
         name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
         for name, stop in spec.stops.items()
     }
-    own = labels_for_units(spec)
-    return Labels(own.joints, own.forces, sections, stops, named)
+    return Labels(joints, forces, sections, stops, named)
 
 
 def _force(force: Force) -> ForceInfo:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from heuncli.records import replace
-from heuncli.report.digits import certainty, error_of_load, lost_by_rounding
+from heuncli.report.digits import certainty, error_of_load, is_of_load, lost_by_rounding
 from heuncli.report.labels import labels_for_units
 from heuncli.report.table_units import Units
 from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
@@ -47,14 +47,14 @@ def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     unit = _unit(keys, study.spec)
     if not unit:
         return None
-    kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
+    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
+    of = study.load_magnitudes if is_of_load(kind, unit) else study.magnitudes
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
     labels = replace(labels_for_units(study.spec), units=SI)
-    error = error_of_load(study.results, labels, of, kind, unit)
-    if error is None:
-        error = certainty(study.results, labels, of).error(kind, unit)
-    return error or None
+    if is_of_load(kind, unit) and study.results.accuracy.get("horizon") is None:
+        return error_of_load(study.results, labels, of, kind, unit) or None
+    return certainty(study.results, labels, study.magnitudes).error(kind, unit) or None
 
 
 def _of_event(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:

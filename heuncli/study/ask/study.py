@@ -68,6 +68,13 @@ class Study:
         return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
 
     @property
+    def load_magnitudes(self) -> Magnitudes:
+        """As much of them as errors of loads hang on."""
+        if self.struck is not None:
+            return self.magnitudes
+        return self.recovery.load_magnitudes._replace(errors=dict(self.history.errors))
+
+    @property
     def of_one_instant(self) -> bool:
         """Whether there is no motion: a state, or a blow."""
         return self.history.checked is None
