@@ -39,8 +39,8 @@ class AxisError(HeunError):
 
     exit_code = 2
 
-    def __init__(self, word: str, message: str, hint: str = HINT) -> None:
-        super().__init__(Problem("bad-option", f"{word}: {message}", hint=hint))
+    def __init__(self, word: str, message: str, hint: str = HINT, code: str = "bad-option") -> None:
+        super().__init__(Problem(code, f"{word}: {message}", hint=hint))
 
 
 class Figure(NamedTuple):
@@ -68,6 +68,10 @@ class Interval(NamedTuple):
     def text(self, value: float) -> str:
         """A value of it in the form of `--set`: all its digits."""
         return text_of(value, self.unit)
+
+    def at(self, place: float) -> str:
+        """The value at a place from 0 to 1, in the form of `--set`."""
+        return self.text(self.low + place * (self.high - self.low))
 
 
 class Drawn(NamedTuple):

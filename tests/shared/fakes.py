@@ -14,6 +14,7 @@ from heuncli.kinetostatics.stretch import NODES, Stretch
 from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.report.page import Page
 from heuncli.results import Array, Block, Extremes, Magnitudes, Results
+from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch
@@ -129,11 +130,23 @@ class FakeStudy:
     changes: Mapping[str, Any] = field(default_factory=dict)
     later_warnings: dict[str, None] = field(default_factory=dict)
     unknown: set[float] = field(default_factory=set)
+    left_out: set[float] = field(default_factory=set)
+
+    @property
+    def setup(self) -> Any:
+        """What stands for the scene: a tree."""
+        return SimpleNamespace(scene=SimpleNamespace(layout=SimpleNamespace(rows=0)))
 
     @property
     def results(self) -> Results:
         """At the asked instants."""
         return self.resample(self.times)
+
+    of_one_instant = False
+
+    def numbers(self, path: str) -> Numbers:
+        """The numbers at a path of the results."""
+        return find(self.results, path)
 
     @property
     def search_times(self) -> Array:

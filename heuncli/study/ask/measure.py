@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
@@ -74,7 +75,7 @@ def value(asked: MeasureRequest, study: Study) -> Peak:
             raise several(path, there)
         return Peak(float(there.values.reshape(())), None)
     if asked.how in ("max", "min", "abs"):
-        return peak(study, path, asked.how)
+        return of_all(peak(study, path, asked.how))
     if asked.how == "at":
         at = instant_of(asked, results.time)
         there = find(study.resample(np.array([at])), path)
@@ -197,10 +198,10 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
         low, high = lowest_and_highest(columns(study.results)[0], at)
     else:
         low, high = searched(study, path, columns, SIDES["max" if even and how == "abs" else how], times)
-    if how == "abs" and abs(low.value) > abs(high.value):
-        how, low = "min", low._replace(value=abs(low.value))
-    found = low if how == "min" else high
-    value = float(np.sqrt(np.abs(found.value))) if even else found.value
+    lower = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
+    found = low if lower else high
+    result = (abs(found.value) if how == "abs" else found.value) + 0.0
+    value = float(np.sqrt(np.abs(result))) if even else result
     return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
 
 
@@ -213,7 +214,7 @@ def lowest_and_highest(values: Array, at: float) -> tuple[Peak, Peak]:
     """The lowest and the highest of some values (n,) at an instant; nan where all are open."""
     known = values[~np.isnan(values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
-    return Peak(low + 0.0, at), Peak(high + 0.0, at)
+    return Peak(low, at), Peak(high, at)
 
 
 def searched(
@@ -234,9 +235,14 @@ def searched(
     bounds = study.extremes(search, report_of(path), times=times)
     lowest, highest = bounds.places[0] if bounds.places else (None, None)
     return (
-        Peak(float(bounds.low[0]) + 0.0, float(bounds.low_at[0]), lowest),
-        Peak(float(bounds.high[0]) + 0.0, float(bounds.high_at[0]), highest),
+        Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest),
+        Peak(float(bounds.high[0]), float(bounds.high_at[0]), highest),
     )
+
+
+def of_all(found: Peak) -> Peak:
+    """The extreme of a whole run: open where the quantity is open at some instant, for there it may be any number."""
+    return found if found.open_at is None else found._replace(value=math.nan, at=found.open_at, place=None)
 
 
 def stated_error(study: Study, keys: Sequence[str]) -> float:
