@@ -208,8 +208,9 @@ def speed(velocities: Array) -> Array:
 
 def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Compared | None = None) -> Recovery:
     """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
-    require_solvable(setup.scene, recovered)
-    require_directions(setup.scene, recovered)
+    if compared is None:  # else it was asked before
+        require_solvable(setup.scene, recovered)
+        require_directions(setup.scene, recovered)
     found = Recovery(setup, recovered, least_norm, compared=compared)
     if setup.scene.mechanism.rubbing and found.decided is not None:
         from heuncli.redundancy.rubbing import require_certain  # few scenes need it
