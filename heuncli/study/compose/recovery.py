@@ -109,7 +109,8 @@ class Recovery:
     def asked_joints(self) -> list[JointLoads]:
         """The reactions of the joints that are asked for, or that a stop which is asked for stands in."""
         asked, decided = self.setup.asked, self.decided
-        if "joints" not in asked.partial or (decided is not None and decided.marks):
+        every = "joints" not in asked.partial or BLOWS in asked.reports  # of a blow all is told
+        if every or (decided is not None and decided.marks):
             return self.joints
         mechanism = self.setup.scene.mechanism
         stopped = {mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in asked.of("stops")}
