@@ -22,7 +22,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array, Block, CertainSum, Magnitudes, Mask
 from heuncli.results_schema import BLOWS, SHARED
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.load_errors import Compared
+from heuncli.study.solve.load_errors import SeenInstants
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
     from heuncli.kinetostatics.shares import Shares
@@ -52,7 +52,7 @@ class Recovery:
     given: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
     told: bool = False
-    compared: Compared | None = None
+    compared: SeenInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """The same of the scene with other cuts; what was computed stays."""
@@ -207,7 +207,7 @@ def speed(velocities: Array) -> Array:
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 
-def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Compared | None = None) -> Recovery:
+def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: SeenInstants | None = None) -> Recovery:
     """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
     if compared is None:  # else it was asked before
         require_solvable(setup.scene, recovered)

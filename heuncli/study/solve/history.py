@@ -35,7 +35,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
 from heuncli.study.model.memory_estimate import Room, require_room_for_steps
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.load_errors import Compared, LoadErrors
+from heuncli.study.solve.load_errors import LoadErrors, SeenInstants
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
@@ -65,7 +65,7 @@ class History:
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
-    compared: Compared | None = None
+    compared: SeenInstants | None = None
 
     @property
     def changes(self) -> tuple[Changes, ...]:
@@ -222,7 +222,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     answers = both.at(slice(0, 1))
     require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
     require_motion(layout, answers)
-    errors = LoadErrors(setup, by_cause)
+    errors = LoadErrors(setup, by_cause, keeping=True)
     errors.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
     off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both.bodies, len(starts), layout.size)[0])

@@ -48,7 +48,7 @@ TOLD_IN = {
 }
 
 
-class Compared(NamedTuple):
+class SeenInstants(NamedTuple):
     """What was found of instants on the way to their errors: the bodies' states, and what acts in the joints."""
 
     states: CarriedStates
@@ -58,11 +58,15 @@ class Compared(NamedTuple):
 class LoadErrors:
     """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
 
-    def __init__(self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED) -> None:
+    def __init__(
+        self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED, *, keeping: bool = False
+    ) -> None:
+        """keeping: what is found of the instants on the way, which of a whole run would be much."""
+        self.keeping = keeping
         self.setup, self.by_cause, self.weights = setup, by_cause, weights
         self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
         self.extents: dict[tuple[str, str], Extent] = {}
-        self.last: Compared | None = None  # of the instants that were added last
+        self.last: SeenInstants | None = None  # of the instants that were added last
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
         self.asked = self.before = np.zeros(0, dtype=bool)
 
@@ -99,7 +103,7 @@ class LoadErrors:
         """Instants that are answered with the same closure rows in all runs."""
         self.asked, self.before = asked, before
         states = body_states(self.setup.scene.layout, several)
-        self.last = Compared(states)
+        self.last = SeenInstants(states) if self.keeping else None
         loads = applied_loads(self.setup.scene.mechanism, states, several)
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
@@ -111,7 +115,7 @@ class LoadErrors:
     def add_loads(self, several: Recovered, states: CarriedStates, loads: Sequence[AppliedLoad]) -> None:
         """Loads of all kinds."""
         joints = joint_loads(self.setup.scene.layout, several, states)
-        self.last = Compared(states, tuple(joints))
+        self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
         if "reactions" in self.compared:
