@@ -47,6 +47,8 @@ class Recovered:
 
     def at(self, which: Mask | Indices | slice) -> Recovered:
         """At some of the instants; of a slice views."""
+        if isinstance(which, slice) and which == slice(None):
+            return self
         own = fields(self)
         causes = own.pop("causes")
         return Recovered(**{name: values[which] for name, values in own.items()}, causes=causes and causes.at(which))

@@ -62,7 +62,7 @@ class BodyStates:
     def point_position(self, body: int, point: Array) -> Array:
         """World position of a point given in body axes, (n_t, 3); a ground point as it is."""
         if body == GROUND:
-            return np.broadcast_to(point, (len(self.x), 3))
+            return at_each(point, self.x)
         return self.x[:, body] + self.R[:, body] @ point
 
     def point_positions(self, bodies: Sequence[int], points: Sequence[Array]) -> list[Array]:
@@ -92,7 +92,7 @@ class BodyStates:
     def direction(self, body: int, vector: Array) -> Array:
         """World components of a direction fixed in a body, (n_t, 3)."""
         if body == GROUND:
-            return np.broadcast_to(vector, (len(self.x), 3))
+            return at_each(vector, self.R)
         return self.R[:, body] @ vector
 
 
@@ -114,6 +114,18 @@ class CarriedStates(BodyStates):
         """
         straight = order == [*range(table.shape[1])]
         self.__dict__.update(_table=table, _order=None if straight else order, _gravity=gravity, _beside=beside)
+
+    def at(self, which: slice) -> CarriedStates:
+        """At some of the instants; what was found by component is not found again."""
+        made, own = object.__new__(CarriedStates), self.__dict__
+        made.__dict__.update(
+            _table=self._table[which], _order=self._order, _gravity=self._gravity, _beside=self._beside,
+            _rows={name: np.ascontiguousarray(found[..., which]) for name, found in self._rows.items()},
+        )  # fmt: skip
+        if "turning" in own:
+            w, u = self.turning
+            made.__dict__["turning"] = np.ascontiguousarray(w[..., which]), np.ascontiguousarray(u[..., which])
+        return made
 
     def __getattr__(self, name: str) -> Array:
         """What was not asked for before."""
@@ -158,7 +170,14 @@ CARRIED = {
 }  # fmt: skip
 
 
-def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array] = NONE) -> BodyStates:
+def at_each(vector: Array, like: Array) -> Array:
+    """A vector (3,) at as many instants as there are of something else, (n_t, 3)."""
+    found = np.empty((len(like), 3))
+    found[:] = vector
+    return found
+
+
+def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array] = NONE) -> CarriedStates:
     """From the kernel's values at the joint points (accelerations less g) to those of origins and centres of mass.
 
     steady: axes (body axes) about which the spins of bodies do not change: d/dt (omega . a) = alpha . a = 0. What of it

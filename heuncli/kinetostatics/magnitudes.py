@@ -49,12 +49,12 @@ def magnitudes(
     """
     g = float(np.sqrt(np.sum(np.square(mechanism.gravity))))
     mass = [body.mass for body in mechanism.bodies]
-    force = _largest(inertia)
+    own = magnitudes_of_loads(states, inertia, actions, size)
+    force = own.by_unit["N"]
     pushed = 0.0  # acceleration that an applied load alone would give
     for action in actions:
-        acting = max(_largest(action.force), _largest(action.moment) / size)
-        force = max(force, acting)
         if action.kind == "load" and (action.from_ is None or action.from_.body != action.to.body):
+            acting = max(_largest(action.force), _largest(action.moment) / size)
             pushed = max(
                 pushed, *(acting / mass[end.body] for end, *_ in action.on_bodies() if end.body != GROUND), 0.0
             )
@@ -64,12 +64,20 @@ def magnitudes(
     turning = acceleration / _least_gyration(mechanism, size)
     speed = max(v, float(np.sqrt(size * acceleration)))
     by_unit = {
-        "m": size, "m/s": speed, "m/s²": acceleration,
+        **own.by_unit,
+        "m/s": speed, "m/s²": acceleration,
         "rad": 1.0, "rad/s": max(spin, float(np.sqrt(turning))), "rad/s²": turning,
-        "N": force, "N·m": force * size, "W": force * speed,
+        "W": force * speed,
         "J": max([sum(mass) * g * size, *map(_largest, energy.values())]),
     }  # fmt: skip
-    return Magnitudes(by_unit, size, _largest(states.x), {})
+    return own._replace(by_unit=by_unit)
+
+
+def magnitudes_of_loads(states: BodyStates, inertia: Array, actions: Sequence[Action], size: float) -> Magnitudes:
+    """As much of the magnitudes as errors of loads hang on: lengths, forces, moments."""
+    acting = (max(_largest(action.force), _largest(action.moment) / size) for action in actions)
+    force = max(_largest(inertia), *acting, 0.0)
+    return Magnitudes({"m": size, "N": force, "N·m": force * size}, size, _largest(states.x), {})
 
 
 def _least_gyration(mechanism: Mechanism, size: float) -> float:

@@ -26,6 +26,8 @@ from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 from heuncli.tree.starts import joint_frame
 
+IN_PLANE, ACROSS = np.array([1.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
+
 
 class Named(Protocol):
     """Arrays by the names of fields: a table, or a mapping."""
@@ -43,6 +45,10 @@ class StopLoad:
     stop: Stop
     value: Array
     unit: Array
+
+    def at(self, which: slice) -> StopLoad:
+        """At some of the instants."""
+        return StopLoad(self.stop, self.value[which], self.unit[which])
 
     @property
     def force(self) -> Array:
@@ -85,6 +91,13 @@ class JointLoads:
     drive: Array | None
     tension: Array | None  # of a rod, (n_t,); None between the limits of a stop, which carry all there is
     stops: tuple[StopLoad, ...] = ()
+
+    def at(self, which: slice, points: JointPoints) -> JointLoads:
+        """At some of the instants, where the points are these."""
+        axis, drive, tension = (None if x is None else x[which] for x in (self.axis, self.drive, self.tension))
+        stops = tuple(own.at(which) for own in self.stops)
+        force, moment = self.force[which], self.moment[which]
+        return JointLoads(self.joint, points, self.number, force, moment, axis, drive, tension, stops)
 
     @property
     def point(self) -> Array:
@@ -176,6 +189,12 @@ def joint_loads(
     return loads
 
 
+def at_instants(loads: Sequence[JointLoads], which: slice, states: BodyStates) -> list[JointLoads]:
+    """Reactions of joints at some of their instants; states: the bodies' at these."""
+    points = JointPoints([load.joint for load in loads], states)
+    return [load.at(which, points) for load in loads]
+
+
 def rows_of(layout: Layout, joint: int) -> list[int]:
     """The closure rows of a cut joint's own constraint, not of stops."""
     stops = {contact.row for contact in layout.contacts if not contact.is_rope}
@@ -205,7 +224,7 @@ def _of_joint(layout: Layout, joint: int, rows: Named, of: str) -> Array:
 
 def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     """The parts that exist in a scene declared planar: force in x, y, moment in z; (..., 3)."""
-    return force * np.array([1.0, 1.0, 0.0]), moment * np.array([0.0, 0.0, 1.0])
+    return force * IN_PLANE, moment * ACROSS
 
 
 def constraint_map(joint: Joint, states: BodyStates) -> Array:

@@ -55,6 +55,11 @@ class Resolution:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
         return singular_poses(self.searched, times, redundant) if self.searched is not None else []
 
+    @property
+    def marks(self) -> bool:
+        """Whether `show` marks anything."""
+        return self.left is not None or bool(self.words)
+
     def show(self, states: BodyStates, shown: Block, axes: str = "world") -> None:
         """Mark what is open, or was until a split was chosen, in the blocks of foundation, joints, stops, in place.
 

@@ -93,11 +93,7 @@ class Certainty(NamedTuple):
 
 def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
-    scales: dict[tuple[str, str], float] = {}
-    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
-    for series in chain(walk(results, labels), struck):
-        key = (kind_of(series), series.unit)
-        scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    scales = scales_of(results, labels)
     errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
         for own in (kind, f"{kind} {BY_CAUSE}"):
@@ -118,6 +114,29 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
     return with_units(Certainty(errors, lost), labels.units)
+
+
+def scales_of(results: Results, labels: Labels, only: str | None = None) -> dict[tuple[str, str], float]:
+    """The largest magnitudes of a run by kind and unit, of its blows, too; only: of one kind."""
+    scales: dict[tuple[str, str], float] = {}
+    struck = (series for impulse in results.impulses for series in walk_impulse(impulse, labels))
+    for series in chain(walk(results, labels), struck):
+        key = (kind_of(series), series.unit)
+        if only is None or key[0] == only:
+            scales[key] = max(scales.get(key, 0.0), largest(series.values))
+    return scales
+
+
+def is_of_load(kind: str, unit: str) -> bool:
+    """Whether numbers are forces or moments of a kind whose error is one of the whole kind."""
+    return kind in LOADS and unit in ("N", "N·m")
+
+
+def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float:
+    """The error of one kind of loads, as `certainty` has it where there is no horizon."""
+    own = _of_wrench(kind, _relative(results, kind), scales_of(results, labels, kind), of.size)
+    found = {**own, **of.errors}
+    return max(found[kind, unit], lost_by_rounding(of).get(unit, 0.0))
 
 
 def with_units(certain: Certainty, units: Units) -> Certainty:
@@ -184,6 +203,9 @@ def _relative(results: Results, kind: str) -> float:
 
 def largest(values: Array) -> float:
     """The largest finite magnitude, 0 where there is none."""
+    whole = float(np.abs(values).max(initial=0.0))
+    if math.isfinite(whole):
+        return whole
     finite = np.abs(values[np.isfinite(values)])
     return float(finite.max()) if finite.size else 0.0
 

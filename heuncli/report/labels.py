@@ -95,6 +95,12 @@ class Labels:
         return force.type == "couple" or self._kind(force.joint).motions[:1] == ("turning",)
 
 
+def labels_for_units(spec: Spec) -> Labels:
+    """What units hang on: of which kind joints and forces are; of a joint's ends the bodies alone."""
+    joints = {name: JointInfo(joint.kind, joint.a, joint.b) for name, joint in spec.joints.items()}
+    return Labels(joints, {name: _force(force) for name, force in spec.forces.items()})
+
+
 def labels_of(spec: Spec) -> Labels:
     """The labels of a loaded spec."""
     joints = {

@@ -19,7 +19,13 @@ def hat(a: Array) -> Array:
 def about(axis: Array, angle: float) -> Array:
     """Rotation by `angle` [rad] about the unit vector `axis`, (3, 3)."""
     s, c = math.sin(angle), math.cos(angle)
-    return c * np.eye(3) + s * hat(axis) + (1.0 - c) * np.outer(axis, axis)
+    x, y, z = axis.tolist()
+    k, i, o = 1.0 - c, c * 1.0 + s * 0.0, c * 0.0  # in the order in which c 1 + s hat(n) + (1 - c) n n' is added up
+    return np.array([
+        [i + k * (x * x), o + s * -z + k * (x * y), o + s * y + k * (x * z)],
+        [o + s * z + k * (y * x), i + k * (y * y), o + s * -x + k * (y * z)],
+        [o + s * -y + k * (z * x), o + s * x + k * (z * y), i + k * (z * z)],
+    ])  # fmt: skip
 
 
 def from_vector(turn: Array) -> Array:
@@ -35,13 +41,14 @@ def to_vector(R: Array) -> Array:
 
 def to_quaternion(R: Array) -> Array:
     """Unit quaternion of a rotation, (4,), from its largest component (Shepperd's choice: no cancellation)."""
-    t = R[0, 0] + R[1, 1] + R[2, 2]
-    squares = (1.0 + t, 1.0 + 2.0 * R[0, 0] - t, 1.0 + 2.0 * R[1, 1] - t, 1.0 + 2.0 * R[2, 2] - t)
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = R.tolist()
+    t = xx + yy + zz
+    squares = (1.0 + t, 1.0 + 2.0 * xx - t, 1.0 + 2.0 * yy - t, 1.0 + 2.0 * zz - t)
     k = max(range(4), key=lambda i: squares[i])
     s = math.sqrt(squares[k])
     f = 0.5 / s
-    a, b, c = R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]
-    d, e, g = R[1, 0] + R[0, 1], R[2, 0] + R[0, 2], R[2, 1] + R[1, 2]
+    a, b, c = zy - yz, xz - zx, yx - xy
+    d, e, g = yx + xy, zx + xz, zy + yz
     q = (
         (0.5 * s, a * f, b * f, c * f),
         (a * f, 0.5 * s, d * f, e * f),

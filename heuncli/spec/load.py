@@ -90,7 +90,6 @@ class Loading:
     ) -> None:
         """files: those that the spec names; None: they stand beside it."""
         self.path, self.source, self.checking, self.case, self.files = path, source, checking, case, files
-        self.rules = [rule for rule in RULES if checking or not rule.for_check]
         self.problems = list(source.problems)
         self.warnings: list[Problem] = []
         self.unread: set[str] = set()
@@ -109,6 +108,11 @@ class Loading:
         problems += faults(without_empty, source) if CASES in source.data else ()
         self.data = self.completed(given)
         self.problems += problems
+
+    @property
+    def rules(self) -> list[Rule]:
+        """The rules that are asked."""
+        return [rule for rule in RULES if self.checking or not rule.for_check]
 
     def completed(self, given: dict[str, Any]) -> dict[str, Any]:
         """The data as they are read: those of a planar scene as of one in space."""

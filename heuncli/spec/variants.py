@@ -441,6 +441,8 @@ class LaterReading(Loading):
         moved = self.locations_of((*self.first.places_in(set_), *self.set))
         gone = {dotted(path) for path in self.first.set}
         self.moved = moved.keys() | gone
+        if not gone:
+            return {**self.first.located, **moved}
         return {words: place for words, place in self.first.located.items() if words not in gone} | moved
 
 

@@ -84,7 +84,9 @@ def solved(spec: Spec, options: Options, deadline: float | None, stages: Stages 
         from heuncli.study.compose.parts import composed_in_parts  # what is only exported
 
         parts = composed_in_parts(setup, history, options.reports, options.least_norm)
-    recovery = recover(setup, history.recovered, options.least_norm) if parts is None else parts.recovery
+    recovery = (
+        recover(setup, history.recovered, options.least_norm, history.compared) if parts is None else parts.recovery
+    )
     impulses = impulses_of(setup, history, options.least_norm, by_cause)
     results = compose(setup, history, recovery, options.reports, impulses, parts)
     looked_for = setup.rest.seconds if setup.rest is not None else 0.0  # counted as integration by the history

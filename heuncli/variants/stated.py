@@ -7,10 +7,9 @@ from collections.abc import Sequence
 
 from heuncli import tolerances
 from heuncli.records import replace
-from heuncli.report.digits import certainty, lost_by_rounding
-from heuncli.report.labels import labels_of
+from heuncli.report.digits import certainty, error_of_load, is_of_load, lost_by_rounding
+from heuncli.report.labels import labels_for_units
 from heuncli.report.table_units import Units
-from heuncli.results_paths import find
 from heuncli.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, kind_of_error, quantity
 from heuncli.run_places import words_of
 from heuncli.spec.models import Spec
@@ -38,13 +37,13 @@ def _unit(keys: Sequence[str], spec: Spec) -> str:
     if row is None or not row.units:
         return ""
     own = keys[2:] if keys[0] == BLOWS else keys
-    turns = len(row.units) > 1 and labels_of(spec).turns(own[0], own[1])
+    turns = len(row.units) > 1 and labels_for_units(spec).turns(own[0], own[1])
     return row.units[1 if turns else 0]
 
 
 def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     """The error of a measure, as tables and goldens state it; None where the run states none, as of what is counted."""
-    there = find(study.results, asked.path)
+    there = study.numbers(asked.path)
     keys = there.keys
     if keys[0] == EVENTS:
         return _of_event(keys, peak, study)
@@ -59,11 +58,14 @@ def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
 
 def _of_unit(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
     """The error of numbers of a kind and unit."""
-    kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
+    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
+    of = study.load_magnitudes if is_of_load(kind, unit) else study.magnitudes
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
-    certain = certainty(study.results, replace(labels_of(study.spec), units=SI), of)
-    return certain.error(kind, unit) or None
+    labels = replace(labels_for_units(study.spec), units=SI)
+    if is_of_load(kind, unit) and study.results.accuracy.get("horizon") is None:
+        return error_of_load(study.results, labels, of, kind, unit) or None
+    return certainty(study.results, labels, study.magnitudes).error(kind, unit) or None
 
 
 def _of_root(value: float, largest: float) -> float:

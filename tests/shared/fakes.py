@@ -14,6 +14,7 @@ from heuncli.kinetostatics.stretch import NODES, Stretch
 from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.report.page import Page
 from heuncli.results import Array, Block, Extremes, Magnitudes, Results
+from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch
@@ -140,6 +141,12 @@ class FakeStudy:
     def results(self) -> Results:
         """At the asked instants."""
         return self.resample(self.times)
+
+    of_one_instant = False
+
+    def numbers(self, path: str) -> Numbers:
+        """The numbers at a path of the results."""
+        return find(self.results, path)
 
     @property
     def search_times(self) -> Array:

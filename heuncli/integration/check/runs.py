@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 
@@ -174,6 +175,15 @@ def shared_steps(a: Array, b: Array) -> bool:
     return bool(np.any((np.abs(others[k] - begin) <= near) & (np.abs(b[k] - end) <= near)))
 
 
+@cache
+def without_symmetry(count: int) -> Array:
+    """Numbers between a half and one of either sign, without a pattern, (count,)."""
+    share = np.modf(0.6180339887498949 * np.arange(1, count + 1))[0]
+    found = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
+    found.flags.writeable = False
+    return np.asarray(found)
+
+
 def moved_start(layout: Layout) -> Array:
     """A start beside the given one by the rounding of its numbers; the closures are closed again by the run.
 
@@ -182,8 +192,7 @@ def moved_start(layout: Layout) -> Array:
     even spread of fractions of the golden section.
     """
     y = layout.y0.copy()
-    share = np.modf(0.6180339887498949 * np.arange(1, len(y) + 1))[0]
-    direction = np.where(share < 0.5, -1.0, 1.0) * (0.5 + np.modf(2.0 * share)[0] / 2.0)
+    direction = without_symmetry(len(y))
     for group in layout.tables["groups"]:
         coordinates, rates, end = group["coordinates"], group["rates"], group["end"]
         unit = 1.0 / layout.weights[coordinates:end]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Literal
 
@@ -63,7 +63,7 @@ def report_of(path: str) -> frozenset[str] | None:
 def value(asked: MeasureRequest, study: Study) -> Peak:
     """The number, its instant and place if it has them; nan is open. Raises NotOneNumber."""
     results, path = study.results, asked.path
-    there = find(results, path)
+    there = study.numbers(path)
     if there.keys[0] == BLOWS:
         return struck(asked, there, study)
     if there.keys[0] == EVENTS and asked.how:
@@ -90,7 +90,7 @@ def value(asked: MeasureRequest, study: Study) -> Peak:
 def lost_from(asked: MeasureRequest, study: Study) -> float | None:
     """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
     results = study.results
-    horizon, there = results.accuracy.get("horizon"), find(results, asked.path)
+    horizon, there = results.accuracy.get("horizon"), study.numbers(asked.path)
     if horizon is not None and there.keys[0] == BLOWS:
         return float(horizon) if time_of_blow(results, there) >= horizon else None
     if there.keys[0] == EVENTS:  # of a run that goes on beyond its horizon more may follow
@@ -173,15 +173,15 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
 
     A vector counts by its magnitude, a run of cuts over its whole stretch. times: of these instants alone.
     """
-    asked = find(study.results, path)
+    asked = study.numbers(path)
     if not asked.timed:
         raise NotOneNumber(f"{path} has no instants, of which one could be the largest", f"give the path alone: {path}")
     require_extreme(path, asked)
-    even = asked.of_vectors or asked.keys[-1] in MAGNITUDES
+    even = is_even(asked)
     open_at: list[float] = []
 
     def columns(results: Results) -> Array:
-        values = find(results, path).values
+        values = (asked if results is study.results else find(results, path)).values
         is_open = np.isnan(values)
         if is_open.any():
             left = is_open.reshape(len(values), -1).any(axis=1)
@@ -193,24 +193,51 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
             values = values * values
         return values.reshape(len(values), -1)
 
+    if study.of_one_instant and CUT not in asked.axes:
+        at = float((study.results.time if times is None else times)[0])
+        low, high = lowest_and_highest(columns(study.results)[0], at)
+    else:
+        low, high = searched(study, path, columns, SIDES["max" if even and how == "abs" else how], times)
+    lower = how == "min" or (how == "abs" and abs(low.value) > abs(high.value))
+    found = low if lower else high
+    result = (abs(found.value) if how == "abs" else found.value) + 0.0
+    value = float(np.sqrt(np.abs(result))) if even else result
+    return found._replace(value=value, open_at=float(min(open_at)) if open_at else None)
+
+
+def is_even(asked: Numbers) -> bool:
+    """Whether the squares of its numbers are searched: those of magnitudes, which are smooth where these are zero."""
+    return asked.of_vectors or asked.keys[-1] in MAGNITUDES
+
+
+def lowest_and_highest(values: Array, at: float) -> tuple[Peak, Peak]:
+    """The lowest and the highest of some values (n,) at an instant; nan where all are open."""
+    known = values[~np.isnan(values)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (np.nan, np.nan)
+    return Peak(low, at), Peak(high, at)
+
+
+def searched(
+    study: Study, path: str, columns: Callable[[Results], Array], sides: tuple[float, ...], times: Array | None
+) -> tuple[Peak, Peak]:
+    """The lowest and the highest of a motion, between the samples too; along a run of cuts with its place."""
+    asked = study.numbers(path)
+    even = is_even(asked)
     error = np.array([stated_error(study, asked.keys)])
     n = columns(study.results).shape[1]
-    sides = SIDES["max" if even and how == "abs" else how]
-    searched = ColumnSearch(columns, [list(range(n))], error, np.array([even]), sides=sides)
+    search = ColumnSearch(columns, [list(range(n))], error, np.array([even]), sides=sides)
     if CUT in asked.axes:
         name = asked.keys[1]
-        searched = searched._replace(
+        search = search._replace(
             columns=no_columns, groups=[], along=lambda results: [(name, columns(results))], bent=asked.bent,
             sides=BOTH,
         )  # fmt: skip
-    bounds = study.extremes(searched, report_of(path), times=times)
-    low, high = float(bounds.low[0]), float(bounds.high[0])
-    lower = how == "min" or (how == "abs" and abs(low) > abs(high))
-    result, at = (low, bounds.low_at) if lower else (high, bounds.high_at)
-    result = (abs(result) if how == "abs" else result) + 0.0
-    place = bounds.places[0][0 if lower else 1] if bounds.places else None
-    value = float(np.sqrt(np.abs(result))) if even else result
-    return Peak(value, float(at[0]), place, float(min(open_at)) if open_at else None)
+    bounds = study.extremes(search, report_of(path), times=times)
+    lowest, highest = bounds.places[0] if bounds.places else (None, None)
+    return (
+        Peak(float(bounds.low[0]), float(bounds.low_at[0]), lowest),
+        Peak(float(bounds.high[0]), float(bounds.high_at[0]), highest),
+    )
 
 
 def of_all(found: Peak) -> Peak:

@@ -11,6 +11,7 @@ import numpy as np
 
 from heuncli.records import record
 from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
+from heuncli.results_paths import Numbers, find
 from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study.compose.finiteness import require_finite
@@ -66,6 +67,29 @@ class Study:
             return own._replace(errors=errors)
         return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)
 
+    @property
+    def load_magnitudes(self) -> Magnitudes:
+        """As much of them as errors of loads hang on."""
+        if self.struck is not None:
+            return self.magnitudes
+        return self.recovery.load_magnitudes._replace(errors=dict(self.history.errors))
+
+    @property
+    def of_one_instant(self) -> bool:
+        """Whether there is no motion: a state, or a blow."""
+        return self.history.checked is None
+
+    def numbers(self, path: str) -> Numbers:
+        """The numbers at a path of the results, found once. Raises SpecError [unknown-path]."""
+        found = self._numbers.get(path)
+        if found is None:
+            found = self._numbers[path] = find(self.results, path)
+        return found
+
+    @cached_property
+    def _numbers(self) -> dict[str, Numbers]:
+        return {}
+
     @cached_property
     def search_times(self) -> Array:
         """Instants close enough to bracket every extreme, (n,) ascending."""
@@ -81,7 +105,7 @@ class Study:
 
     def resample(self, times: Array) -> Results:
         """The results of the run at other instants within it, (n,) ascending; of a state those of its one instant."""
-        if self.history.checked is None:
+        if self.of_one_instant:
             return self.results
         wanted = self.options.reports
         results = compose(self.setup, self.history, self._recovery(times, wanted), wanted, self.struck)

@@ -15,13 +15,14 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes
-from heuncli.kinetostatics.reactions import JointLoads, joint_loads
+from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
+from heuncli.kinetostatics.reactions import JointLoads, at_instants, joint_loads
 from heuncli.mechanism.model import PairLoad
 from heuncli.records import record, replace
 from heuncli.results import Array, Block, CertainSum, Magnitudes, Mask
 from heuncli.results_schema import BLOWS, SHARED
 from heuncli.study.model.setup import Setup
+from heuncli.study.solve.load_errors import SeenInstants
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
     from heuncli.kinetostatics.shares import Shares
@@ -41,7 +42,8 @@ class Recovery:
 
     given: actions from outside that are no loads of the mechanism: the impulses of blows. causes: the names of the
     kernel's columns, where these are not those of the mechanism. told: what is open at these instants is told
-    elsewhere, by what it is on either side of each (study/search/open_between.py), and not looked for.
+    elsewhere, by what it is on either side of each (study/search/open_between.py), and not looked for. compared: of one
+    instant and another beside it, what is known of them before.
     """
 
     setup: Setup
@@ -50,6 +52,7 @@ class Recovery:
     given: tuple[Action, ...] = ()
     causes: tuple[str, ...] | None = None
     told: bool = False
+    compared: SeenInstants | None = None
 
     def with_cuts(self, setup: Setup) -> Recovery:
         """The same of the scene with other cuts; what was computed stays."""
@@ -57,7 +60,7 @@ class Recovery:
 
     def at(self, which: Mask) -> Recovery:
         """At some of the instants."""
-        found: Recovery = replace(self, recovered=self.recovered.at(which))
+        found: Recovery = replace(self, recovered=self.recovered.at(which), compared=None)
         return found
 
     def as_told(self) -> Recovery:
@@ -71,6 +74,8 @@ class Recovery:
     @cached_property
     def states(self) -> BodyStates:
         """Places, velocities and accelerations of the bodies."""
+        if self.compared is not None:
+            return self.compared.states.at(slice(0, len(self.recovered.times)))
         return body_states(self.setup.scene.layout, self.recovered, self.setup.steady)
 
     @cached_property
@@ -103,16 +108,22 @@ class Recovery:
     @cached_property
     def asked_joints(self) -> list[JointLoads]:
         """The reactions of the joints that are asked for, or that a stop which is asked for stands in."""
-        asked = self.setup.asked
-        if self.decided is not None or "joints" not in asked.partial or "unsplit" in self.__dict__:
+        asked, decided = self.setup.asked, self.decided
+        every = "joints" not in asked.partial or BLOWS in asked.reports  # of a blow all is told
+        if every or (decided is not None and decided.marks):
             return self.joints
         mechanism = self.setup.scene.mechanism
         stopped = {mechanism.joints[stop.joint].name for stop in mechanism.stops if stop.name in asked.of("stops")}
-        return joint_loads(self.setup.scene.layout, self.recovered, self.states, asked.of("joints") | stopped)
+        names = asked.of("joints") | stopped
+        if decided is not None or self.compared is not None or "unsplit" in self.__dict__:
+            return [load for load in self.joints if load.joint.name in names]
+        return joint_loads(self.setup.scene.layout, self.recovered, self.states, names)
 
     @cached_property
     def unsplit(self) -> list[JointLoads]:
         """The joints' reactions as the kernel answers them: where some are redundant, one split of many."""
+        if self.compared is not None and self.compared.joints:
+            return at_instants(self.compared.joints, slice(0, len(self.recovered.times)), self.states)
         return joint_loads(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
@@ -167,6 +178,11 @@ class Recovery:
         return magnitudes(scene.mechanism, self.states, self.inertia, self.actions, energy, scene.layout.size)
 
     @cached_property
+    def load_magnitudes(self) -> Magnitudes:
+        """As much of them as errors of loads hang on."""
+        return magnitudes_of_loads(self.states, self.inertia, self.actions, self.setup.scene.layout.size)
+
+    @cached_property
     def inertia(self) -> Array:
         """The largest inertia load or weight of each body, (n_t, n) [N]."""
         return inertia_scale(self.setup.scene.mechanism, self.states)
@@ -191,11 +207,12 @@ def speed(velocities: Array) -> Array:
     return np.asarray(np.sqrt(np.sum(velocities**2, axis=-1)))
 
 
-def recover(setup: Setup, recovered: Recovered, least_norm: bool) -> Recovery:
-    """What follows from the kernel's answers. Raises SolveError where no acceleration exists."""
-    require_solvable(setup.scene, recovered)
-    require_directions(setup.scene, recovered)
-    found = Recovery(setup, recovered, least_norm)
+def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: SeenInstants | None = None) -> Recovery:
+    """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
+    if compared is None:  # else it was asked before
+        require_solvable(setup.scene, recovered)
+        require_directions(setup.scene, recovered)
+    found = Recovery(setup, recovered, least_norm, compared=compared)
     if setup.scene.mechanism.rubbing and found.decided is not None:
         from heuncli.redundancy.rubbing import require_certain  # few scenes need it
 

@@ -44,7 +44,7 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
 
 def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
     """The fields of a part of a spec: a named tuple, or a record."""
-    yield from zip(item._fields, item, strict=True) if hasattr(item, "_fields") else fields(item).items()
+    return zip(item._fields, item, strict=True) if hasattr(item, "_fields") else iter(fields(item).items())
 
 
 def expressions_in(item: Any) -> Iterator[Expression]:

@@ -35,7 +35,7 @@ from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
 from heuncli.study.model.memory_estimate import Room, require_room_for_steps
 from heuncli.study.model.setup import Setup
-from heuncli.study.solve.load_errors import LoadErrors
+from heuncli.study.solve.load_errors import LoadErrors, SeenInstants
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
@@ -50,7 +50,8 @@ class History:
     tolerance: what the motion was to keep; estimate: of the errors, by kind; blows: those that happened; beside: those
     of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
     those of singular poses that the run came through; seconds: what took how long;
-    errors: by kind and unit, of one instant those of shares by cause.
+    errors: by kind and unit, of one instant those of shares by cause;
+    compared: of one instant and one beside it, what their errors were made of.
     """
 
     times: Array
@@ -64,6 +65,7 @@ class History:
     singular: tuple[float, ...] = ()
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
+    compared: SeenInstants | None = None
 
     @property
     def changes(self) -> tuple[Changes, ...]:
@@ -220,7 +222,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     answers = both.at(slice(0, 1))
     require_start(setup.scene, answers, Wording("accelerations behind the blow") if blows[0] else Wording())
     require_motion(layout, answers)
-    errors = LoadErrors(setup, by_cause)
+    errors = LoadErrors(setup, by_cause, keeping=True)
     errors.add(both, *np.ones((2, 1), dtype=bool))
     # of one instant: what rounding of its state makes of the loads, and of a pose that was looked for
     off = 0.0 if setup.rest is None else float(motion_error(Marks(layout), both.bodies, len(starts), layout.size)[0])
@@ -228,7 +230,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
         times, answers.at, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
-        errors=errors.errors_by_cause(),
+        errors=errors.errors_by_cause(), compared=None if setup.steady else errors.last,
     )  # fmt: skip
 
 

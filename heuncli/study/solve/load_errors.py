@@ -19,12 +19,13 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
-from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import total
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Estimate, Mask
 from heuncli.results_schema import BLOWS, BY_CAUSE
 from heuncli.shapes.rotations import cross_rows
@@ -47,13 +48,25 @@ TOLD_IN = {
 }
 
 
+class SeenInstants(NamedTuple):
+    """What was found of instants on the way to their errors: the bodies' states, and what acts in the joints."""
+
+    states: CarriedStates
+    joints: tuple[JointLoads, ...] = ()
+
+
 class LoadErrors:
     """Collects the differences of a motion's loads and energy between two runs, of the kinds that are asked for."""
 
-    def __init__(self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED) -> None:
+    def __init__(
+        self, setup: Setup, by_cause: bool = False, weights: Weights = ESTIMATED, *, keeping: bool = False
+    ) -> None:
+        """keeping: what is found of the instants on the way, which of a whole run would be much."""
+        self.keeping = keeping
         self.setup, self.by_cause, self.weights = setup, by_cause, weights
         self.compared = frozenset(kind for kind, told_in in TOLD_IN.items() if told_in & setup.asked.reports)
         self.extents: dict[tuple[str, str], Extent] = {}
+        self.last: SeenInstants | None = None  # of the instants that were added last
         self.reach = 0.0  # farthest centre of mass from the point that the foundation's moment is about
         self.asked = self.before = np.zeros(0, dtype=bool)
 
@@ -90,6 +103,7 @@ class LoadErrors:
         """Instants that are answered with the same closure rows in all runs."""
         self.asked, self.before = asked, before
         states = body_states(self.setup.scene.layout, several)
+        self.last = SeenInstants(states) if self.keeping else None
         loads = applied_loads(self.setup.scene.mechanism, states, several)
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
@@ -98,9 +112,10 @@ class LoadErrors:
         if "motion" in self.compared:
             self.add_motion(states)
 
-    def add_loads(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_loads(self, several: Recovered, states: CarriedStates, loads: Sequence[AppliedLoad]) -> None:
         """Loads of all kinds."""
         joints = joint_loads(self.setup.scene.layout, several, states)
+        self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
         if "reactions" in self.compared:
@@ -255,6 +270,8 @@ class LoadErrors:
         self, arm: float, kind: str, force: str = "force", moment: str = "moment", also: Sequence[str] = ()
     ) -> float:
         """Error of forces and of moments, and of those of other kinds; arm: the longest of a moment."""
+        if not also and not {(kind, force), (kind, moment)} & self.extents.keys():
+            return 0.0
         size = self.setup.scene.layout.size
         F, M = self.extent(kind, force), self.extent(kind, moment)
         parts = [(F, M), *((self.extent(other, force), self.extent(other, moment)) for other in also)]

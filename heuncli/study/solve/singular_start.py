@@ -17,6 +17,7 @@ from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.reactions import Named
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Island, Layout, places_of_rates
@@ -28,7 +29,7 @@ def require_motion(layout: Layout, recovered: Recovered) -> None:
     recovered: of one instant. Where drives accelerate, or where bodies move already, nothing is said.
     """
     rows = recovered.rows[0]
-    dependent = [i for i in layout.islands if (rows["chosen"] < rows["closed"])[i.rows].any()]
+    dependent = [i for i in layout.islands if (rows["chosen"] < rows["closed"])[i.rows].any() and not is_held(i, rows)]
     if not dependent:
         return
     y, accelerations = recovered.states[0], rates_of(layout, recovered)
@@ -51,6 +52,11 @@ def require_motion(layout: Layout, recovered: Recovered) -> None:
         along, kept = set_moving(bare, recovered, rates, [motion])
         if kept and along.residual[0] > along.may_stay[0] and pushed(layout, recovered, along):
             raise SolveError(goes_nowhere(layout, float(recovered.times[0]), dependent[k]))
+
+
+def is_held(island: Island, rows: Named) -> bool:
+    """Whether as many of its rows are independent as it has freedoms: what nothing can move is pushed nowhere."""
+    return float(rows["chosen"][island.rows].sum()) >= len(island.freedoms)
 
 
 def set_moving(
