@@ -39,12 +39,25 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, known: Mask) 
 
     times, known (n_t,): the instants, and at which all is told.
     """
+    if all_finite(blocks):
+        return
     for keys, value, block in leaves(blocks, (), {}):
         if is_wrong(keys, value, block, known):
             instant = at_instant(keys, value, times, known)
             message = f"{'.'.join(keys)} is not finite{instant}: there is no such number"
             hint = "look at very large and very small values nearby, and at points that coincide"
             raise SolveError(Problem("not-finite-result", message, hint=hint))
+
+
+def all_finite(node: Any) -> bool:
+    """Whether all numbers below a node of the results are finite, as they are where nothing is open."""
+    if isinstance(node, np.ndarray):
+        return node.dtype.kind != "f" or bool(np.isfinite(node).all())
+    if isinstance(node, float):
+        return math.isfinite(node)
+    if isinstance(node, list | tuple):
+        return all(map(all_finite, node))
+    return not isinstance(node, Mapping) or all(map(all_finite, node.values()))
 
 
 def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> NumericLeaves:
