@@ -33,27 +33,11 @@ LONGEST, DEEPEST = 2000, 48
 LARGEST_POWER = 64  # whole powers up to this one are multiplied out
 
 CONSTANTS = {"pi": math.pi, "deg": math.pi / 180.0, "rpm": math.pi / 30.0}
+OF_ONE_NUMBER = (
+    "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs", "sign", "step",
+)  # fmt: skip
 ARITY: dict[str, tuple[int, int]] = {
-    **dict.fromkeys(
-        [
-            "sin",
-            "cos",
-            "tan",
-            "asin",
-            "acos",
-            "atan",
-            "sinh",
-            "cosh",
-            "tanh",
-            "exp",
-            "log",
-            "sqrt",
-            "abs",
-            "sign",
-            "step",
-        ],
-        (1, 1),
-    ),
+    **dict.fromkeys(OF_ONE_NUMBER, (1, 1)),
     "atan2": (2, 2),
     **dict.fromkeys(("min", "max", "hypot"), (2, MOST_NODES)),
     "table": (2, 2),

@@ -1,7 +1,7 @@
 """The files that a spec names, of tables and of curves: on the disk, or as they were read before. Impure: reads files.
 
 Their names are relative to the spec's folder. A process that has neither the spec nor these files beside it (a worker
-of a cluster) is given them as they were read (`KeptFiles`), errors included, and looks at no disk.
+of a cluster) is given them as they were read (`FilesAtHand`), errors included, and looks at no disk.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ class KeptFinding(NamedTuple):
     hint: str
 
 
-class KeptFile(NamedTuple):
+class NamedFile(NamedTuple):
     """A file as it was read: its content, or why it has none; outside: what is said of where it stands."""
 
     content: bytes
@@ -82,13 +82,13 @@ class NamedFiles:
             hint = "a table of fewer points, or of these two columns alone" if is_large else RELATIVE
         raise Finding(code, f"the file '{self.path(name)}' cannot be read: {reason}", hint)
 
-    def kept(self, name: str) -> KeptFile:
+    def kept(self, name: str) -> NamedFile:
         """A file as it is now."""
         outside = _kept_finding(self.outside(name))
         try:
-            return KeptFile(bytes(self.content(name)), None, outside)
+            return NamedFile(bytes(self.content(name)), None, outside)
         except Finding as unread:
-            return KeptFile(b"", _kept_finding(unread), outside)
+            return NamedFile(b"", _kept_finding(unread), outside)
 
 
 class NotedFiles(NamedFiles):
@@ -109,10 +109,10 @@ class NotedFiles(NamedFiles):
         return super().outside(name)
 
 
-class KeptFiles(NamedFiles):
+class FilesAtHand(NamedFiles):
     """Files as they were read before; asked for another one this raises FileNotKept."""
 
-    def __init__(self, spec: str, files: Mapping[str, KeptFile]) -> None:
+    def __init__(self, spec: str, files: Mapping[str, NamedFile]) -> None:
         super().__init__(spec)
         self.files = files
 
@@ -128,7 +128,7 @@ class KeptFiles(NamedFiles):
         found = self.kept(name).outside
         return Finding(*found) if found is not None else None
 
-    def kept(self, name: str) -> KeptFile:
+    def kept(self, name: str) -> NamedFile:
         """A file as it was then."""
         found = self.files.get(name)
         if found is None:

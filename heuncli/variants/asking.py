@@ -12,14 +12,16 @@ from heuncli.errors import HeunError, SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
-from heuncli.spec.named_files import KeptFile, KeptFiles
+from heuncli.spec.named_files import FilesAtHand, NamedFile
 from heuncli.study.ask.measure import MeasureRequest, NotInThisRun, Peak, lost_from, value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.variants.axes import Interval
 from heuncli.variants.prepared import Variants
 from heuncli.variants.stated import error_of
 
 EXTREMES = ("max", "min", "abs")
+LOOKED_AT = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which it is seen whether its values fit
 COUNTED = (BLOWS, EVENTS)  # of which one run has more than another
 CASE = "case"  # the name by which an axis varies the load case
 OF_WORDS = ("set-in-si",)  # warnings of how values are written, not of the scene: told once of an axis, not of variants
@@ -65,7 +67,7 @@ class Recipe(NamedTuple):
     options: Options
     overrides: Mapping[str, str]
     case: str | None = None
-    files: Mapping[str, KeptFile] | None = None
+    files: Mapping[str, NamedFile] | None = None
 
 
 class Asker:
@@ -74,7 +76,7 @@ class Asker:
     def __init__(self, recipe: Recipe) -> None:
         """Read the spec and set it up once. Raises SpecError."""
         self.recipe = recipe
-        self._files = None if recipe.files is None else KeptFiles(recipe.path, recipe.files)
+        self._files = None if recipe.files is None else FilesAtHand(recipe.path, recipe.files)
         self._prepared: dict[str | None, Variants] = {}
         self.spec = self.variants(recipe.case).spec
 
@@ -102,6 +104,19 @@ class Asker:
         """The scene of a variant. Raises SpecError."""
         variants, given = self._with_case(values)
         return variants.load(given)
+
+    def scenes(self, interval: Interval) -> list[Spec]:
+        """The scenes at some places of an interval, those that are scenes. Raises SpecError where none is."""
+        specs: list[Spec] = []
+        errors: list[SpecError] = []
+        for place in LOOKED_AT:
+            try:
+                specs.append(self.load({interval.name: interval.at(place)}))
+            except SpecError as error:
+                errors.append(error)
+        if not specs:
+            raise errors[0]
+        return specs
 
     def idle(self, names: Collection[str]) -> frozenset[str]:
         """The parameters among some names on which nothing hangs, in none of the load cases solved so far."""

@@ -26,7 +26,7 @@ from heuncli.spec.quantity import FIGURE
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 MOST_VALUES = 10_000_000  # of one axis, which are kept as numbers
 
-QUANTITY = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")
+QUANTITY = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 EVENLY = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 DRAWN = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)
 FORMS = "NAME=a:b/count, NAME=a:b/count log, NAME=v1,v2,..., or NAME=normal(mean,deviation), uniform(a,b), lhs, sobol"
@@ -39,8 +39,8 @@ class AxisError(HeunError):
 
     exit_code = 2
 
-    def __init__(self, word: str, message: str, hint: str = HINT) -> None:
-        super().__init__(Problem("bad-option", f"{word}: {message}", hint=hint))
+    def __init__(self, word: str, message: str, hint: str = HINT, code: str = "bad-option") -> None:
+        super().__init__(Problem(code, f"{word}: {message}", hint=hint))
 
 
 class Figure(NamedTuple):
@@ -68,6 +68,10 @@ class Interval(NamedTuple):
     def text(self, value: float) -> str:
         """A value of it in the form of `--set`: all its digits."""
         return text_of(value, self.unit)
+
+    def at(self, place: float) -> str:
+        """The value at a place from 0 to 1, in the form of `--set`."""
+        return self.text(self.low + place * (self.high - self.low))
 
 
 class Drawn(NamedTuple):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from heuncli.tolerances import EPS
@@ -22,8 +22,9 @@ REASONS: Mapping[str, str] = MappingProxyType(
 class AnswersOnce:
     """The answers of an asker by their values: what was asked for before is not solved again."""
 
-    def __init__(self, asker: Asker) -> None:
-        self.asker = asker
+    def __init__(self, asker: Asker, begun: Callable[[int], None] = lambda runs: None) -> None:
+        """begun: told of each variant that is solved, with how many were before it."""
+        self.asker, self._begun = asker, begun
         self._known: dict[tuple[tuple[str, str], ...], Answer] = {}
 
     @property
@@ -35,6 +36,7 @@ class AnswersOnce:
         """The answer of a variant; values: by name, in the form of `--set`."""
         key = tuple(sorted(values.items()))
         if key not in self._known:
+            self._begun(self.runs)
             self._known[key] = self.asker.answer(values)
         return self._known[key]
 

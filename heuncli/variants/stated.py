@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from heuncli import tolerances
 from heuncli.records import replace
 from heuncli.report.digits import certainty, lost_by_rounding
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
 from heuncli.results_paths import find
-from heuncli.results_schema import BLOWS, EVENTS, kind_of_error, quantity
+from heuncli.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, kind_of_error, quantity
 from heuncli.run_places import words_of
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, Peak
@@ -18,6 +19,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.selection import entries_of, entry_at
 
 SI = Units({})
+SQUARED = 4.0 * tolerances.EPS  # of the largest square along a run of cuts: what its polynomial loses of a square
 
 
 def unit_of(path: str, spec: Spec) -> str:
@@ -42,17 +44,32 @@ def _unit(keys: Sequence[str], spec: Spec) -> str:
 
 def error_of(asked: MeasureRequest, peak: Peak, study: Study) -> float | None:
     """The error of a measure, as tables and goldens state it; None where the run states none, as of what is counted."""
-    keys = find(study.results, asked.path).keys
+    there = find(study.results, asked.path)
+    keys = there.keys
     if keys[0] == EVENTS:
         return _of_event(keys, peak, study)
     unit = _unit(keys, study.spec)
     if not unit:
         return None
+    error = _of_unit(keys, unit, study)
+    if error is not None and asked.how == "min" and CUT in there.axes and (there.of_vectors or keys[-1] in MAGNITUDES):
+        return max(error, _of_root(peak.value, study.magnitudes.by_unit.get(unit, 0.0)))
+    return error
+
+
+def _of_unit(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
+    """The error of numbers of a kind and unit."""
     kind, of = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), study.magnitudes
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
     certain = certainty(study.results, replace(labels_of(study.spec), units=SI), of)
     return certain.error(kind, unit) or None
+
+
+def _of_root(value: float, largest: float) -> float:
+    """The error of the least magnitude along a run of cuts: the root of a polynomial, known as well as its largest."""
+    lost = SQUARED * largest * largest
+    return lost / max(value, math.sqrt(lost)) if lost > 0.0 else 0.0
 
 
 def _of_event(keys: tuple[str, ...], peak: Peak, study: Study) -> float | None:

@@ -13,6 +13,7 @@ from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.variants.prepared import Variants
+from tests.bench.finds import finds
 from tests.shared.folders import ROOT, SPECS
 
 STARTERS = ROOT / "heuncli" / "starters"
@@ -48,7 +49,7 @@ MEASURED = (
 
 
 def variants() -> None:
-    """Print it, of all results and of one joint's loads alone, and of one measure."""
+    """Print it, of all results and of one joint's loads alone, and of one measure; and what a search takes."""
     print(f"{'':28s}{'all results [ms]':>26s}{'one joint [ms]':>26s}")
     print(f"{'':28s}{'fresh':>10s}{'door':>8s}{'read':>8s}{'fresh':>10s}{'door':>8s}{'read':>8s}")
     for case in CASES:
@@ -62,6 +63,7 @@ def variants() -> None:
         took = of_measure(case, asked)
         title = f"{case.path.stem} {case.what}: {asked.how} {asked.path}"
         print(f"{title:58s}{statistics.median(took):8.2f}{statistics.fmean(took):8.2f}")
+    finds()
 
 
 def of_measure(case: Case, asked: MeasureRequest) -> list[float]:

@@ -16,13 +16,25 @@ from heuncli.commands.sweep import workers
 from heuncli.variants.asking import Asker
 from tests.shared.command import Heun
 from tests.shared.processes import heard
-from tests.shared.sweeps import COUNT, DURATION, STORE, SWINGING, begin, held, killed, rows, wait_until_gone, workers_of
+from tests.shared.sweeps import (
+    COUNT,
+    DURATION,
+    STORE,
+    SWINGING,
+    begin,
+    held,
+    killed,
+    rows,
+    timed,
+    wait_until_gone,
+    workers_of,
+)
 
 pytestmark = pytest.mark.heavy
 
 
 class Undisturbed(NamedTuple):
-    """The rows of a sweep that nobody disturbs, and how long it takes [s]."""
+    """The rows of a sweep that nobody disturbs, and how long its workers work [s]."""
 
     rows: str
     seconds: float
@@ -40,14 +52,13 @@ def undisturbed(tmp_path_factory: pytest.TempPathFactory) -> Undisturbed:
     """Its rows, and what they take."""
     folder = tmp_path_factory.mktemp("undisturbed")
     (folder / "swinging.yaml").write_text(SWINGING)
-    begun = time.monotonic()
-    return Undisturbed(rows(folder), time.monotonic() - begun)
+    return Undisturbed(*timed(folder))
 
 
 def test_what_is_killed_is_taken_up_again(swinging: Path, undisturbed: Undisturbed) -> None:
-    """At instants over the whole of a run, by turns its own process and one of its workers."""
+    """Before its workers are at work and while they are, by turns its own process and one of its workers."""
     took = undisturbed.seconds
-    kept = [killed(swinging, share * took, worker=bool(k % 2)) for k, share in enumerate((0.3, 0.45, 0.6, 0.75))]
+    kept = [killed(swinging, share * took, worker=bool(k % 2)) for k, share in enumerate((-0.2, 0.2, 0.4, 0.3))]
     assert sorted(kept) == kept
     assert rows(swinging, "--store", STORE) == undisturbed.rows
     assert held(swinging) == (COUNT, [(1, number) for number in range(COUNT)])

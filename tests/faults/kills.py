@@ -10,13 +10,12 @@ import argparse
 import random
 import sys
 import tempfile
-import time
 from collections.abc import Sequence
 from pathlib import Path
 
-from tests.shared.sweeps import COUNT, STORE, SWINGING, held, killed, rows
+from tests.shared.sweeps import COUNT, STORE, SWINGING, held, killed, rows, timed
 
-A_STORE = 3  # kills of one store
+A_STORE = 4  # kills of one store
 
 
 def main(words: Sequence[str]) -> int:
@@ -27,34 +26,29 @@ def main(words: Sequence[str]) -> int:
     asked = parser.parse_args(words)
     drawn = random.Random(asked.seed)
     with tempfile.TemporaryDirectory() as name:
-        undisturbed, seconds = whole(Path(name))
-    wrong = 0
-    for begin in range(0, asked.cases, A_STORE):
-        count = min(A_STORE, asked.cases - begin)
+        (Path(name) / "swinging.yaml").write_text(SWINGING)
+        undisturbed, seconds = timed(Path(name))
+    kills, wrong = 0, 0
+    while kills < asked.cases:
         with tempfile.TemporaryDirectory() as name:
-            wrong += store_is_wrong(Path(name), drawn, count, undisturbed, seconds)
-    print(f"{asked.cases} kills, {wrong} stores wrong")
+            done, is_wrong = ended(Path(name), drawn, undisturbed, seconds)
+        kills, wrong = kills + done, wrong + is_wrong
+    print(f"{kills} kills, {wrong} stores wrong")
     return int(wrong > 0)
 
 
-def whole(folder: Path) -> tuple[str, float]:
-    """The rows of a sweep that nobody disturbs, and what it takes [s]."""
-    (folder / "swinging.yaml").write_text(SWINGING)
-    begun = time.monotonic()
-    return rows(folder), time.monotonic() - begun
-
-
-def store_is_wrong(folder: Path, drawn: random.Random, kills: int, undisturbed: str, seconds: float) -> bool:
-    """Kill a sweep some times, then let it end; whether anything is wrong with it."""
+def ended(folder: Path, drawn: random.Random, undisturbed: str, seconds: float) -> tuple[int, bool]:
+    """Kill a sweep until it comes to its end in spite of that, or some times; how often, and whether a row is wrong."""
     (folder / "swinging.yaml").write_text(SWINGING)
     kept: list[int] = []
-    for _ in range(kills):
-        worker, after = drawn.random() < 0.5, drawn.uniform(0.0, seconds)
+    while len(kept) < A_STORE and COUNT not in kept:
+        worker, after = drawn.random() < 0.5, drawn.uniform(-0.2, 1.0) * seconds
         kept.append(killed(folder, after, worker))
-        print(f"{'worker' if worker else 'sweep'} at {after:.2f} s: {kept[-1]} of {COUNT} kept", flush=True)
-    ended = rows(folder, "--store", STORE)
-    right = ended == undisturbed and kept == sorted(kept)
-    return not (right and held(folder) == (COUNT, [(1, number) for number in range(COUNT)]))
+        who = "worker" if worker else "sweep"
+        print(f"{who} at {after:.2f} of {seconds:.2f} s: {kept[-1]} of {COUNT} kept", flush=True)
+    right = rows(folder, "--store", STORE) == undisturbed and kept == sorted(kept)
+    right &= held(folder) == (COUNT, [(1, number) for number in range(COUNT)])
+    return len(kept), not right
 
 
 if __name__ == "__main__":

@@ -12,7 +12,7 @@ from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
-from heuncli.variants.asking import Asker, Recipe
+from heuncli.variants.asking import Asker, Recipe, measured
 from heuncli.variants.stated import error_of, unit_of
 from tests.shared.folders import ROOT, SPECS
 
@@ -44,3 +44,27 @@ def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
     beside, apart = asker.answer({"g": "10.466811241737235", "rate": "7.046032184352546"}).measures
     assert beside.value is None and beside.word == "unknown"
     assert apart.value is not None and apart.error is not None
+
+
+HANGING = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar:
+    shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -3], mass: 700}]
+    points: {top: [0, 0, 0], end: [0, 0, -3]}
+joints: {pivot: {type: weld, from: ground.O, to: bar.top}}
+sections: {along: {body: bar, from: top, to: end, count: 21}}
+"""
+
+
+@pytest.mark.parametrize("path", ["sections.along.force", "sections.along.moment"])
+def test_the_least_magnitude_along_cuts_is_nothing_within_its_error(path: str) -> None:
+    """At the free end nothing is left: the root of what rounding leaves of a square is larger than a load's error."""
+    study = solve(load("hanging.yaml", HANGING), Options())
+    least = measured(MeasureRequest("min", path), study)
+    assert least.value is not None and least.error is not None
+    assert least.value <= least.error < 1e-6 * 700 * 9.81 * 3
+    greatest = measured(MeasureRequest("max", "sections.along.force"), study)
+    assert greatest.error is not None and abs(greatest.value - 700 * 9.81) <= greatest.error < 1e-6

@@ -129,6 +129,12 @@ class FakeStudy:
     changes: Mapping[str, Any] = field(default_factory=dict)
     later_warnings: dict[str, None] = field(default_factory=dict)
     unknown: set[float] = field(default_factory=set)
+    left_out: set[float] = field(default_factory=set)
+
+    @property
+    def setup(self) -> Any:
+        """What stands for the scene: a tree."""
+        return SimpleNamespace(scene=SimpleNamespace(layout=SimpleNamespace(rows=0)))
 
     @property
     def results(self) -> Results:

@@ -17,7 +17,7 @@ from tests.shared.shell import ENVIRONMENT
 
 STORE = "runs.sqlite"
 COUNT = 24
-DURATION = "duration: 6"
+DURATION = "duration: 30"
 SWINGING = SPEC_TEXTS["swinging"].replace("duration: 1", DURATION)  # some tens of milliseconds a variant
 WORDS = ("sweep", "swinging.yaml", f"m=1:2/{COUNT}", "--measure", "max abs joints.pivot.force", "--format", "csv")
 
@@ -77,13 +77,32 @@ def held(folder: Path) -> Held:
         return Held(answers, connection.execute("SELECT sweep, number FROM variants ORDER BY 1, 2").fetchall())
 
 
-def killed(folder: Path, after: float, worker: bool) -> int:
-    """Kill a sweep with a store, or one of its workers, after some seconds; returns how many answers are kept then.
+def at_work(process: subprocess.Popen[str]) -> None:
+    """Wait until a sweep has workers, or has ended."""
+    while process.poll() is None and not workers_of(process.pid):
+        time.sleep(0.005)
 
-    A sweep that has lost a worker goes on; it is waited for.
+
+def timed(folder: Path) -> tuple[str, float]:
+    """The rows of a sweep that nobody disturbs, and how long its workers are at work [s]."""
+    with begin(folder, "--jobs", "2") as process:
+        at_work(process)
+        begun = time.monotonic()
+        out, err = process.communicate(timeout=300)
+    assert process.returncode == 0, err
+    return out, time.monotonic() - begun
+
+
+def killed(folder: Path, after: float, worker: bool) -> int:
+    """Kill a sweep with a store, or one of its workers; returns how many answers are kept then.
+
+    after: seconds since its workers are at work; below zero: so many since it was begun. A sweep that has lost a
+    worker goes on; it is waited for.
     """
     with begin(folder, "--store", STORE, "--jobs", "2") as process:
-        time.sleep(after)
+        if after >= 0.0:
+            at_work(process)
+        time.sleep(abs(after))
         theirs = workers_of(process.pid)
         with suppress(ProcessLookupError):
             os.kill(theirs[0] if worker and theirs else process.pid, signal.SIGKILL)

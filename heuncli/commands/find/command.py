@@ -8,83 +8,78 @@ from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
+from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
-from heuncli.commands.find.condition import Condition, condition_of, parsed
 from heuncli.commands.find.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
 from heuncli.commands.find.request import FORMATS, FindRequest
-from heuncli.commands.find.results import CourseFindings
+from heuncli.commands.find.results import CourseFindings, FindCondition
 from heuncli.commands.find.study import SIDES, look
-from heuncli.errors import Problem, SolveError, SpecError
+from heuncli.errors import Problem, SolveError
 from heuncli.expressions.units import parse_unit
 from heuncli.report.table_units import Units
-from heuncli.spec.models import Spec
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
+from heuncli.variants.conditions import condition_of, in_si
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
+from heuncli.variants.stated import unit_of
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+SCAN, MOST = 7, 300  # variants of the scan, and in all, where it is not said
+FORM = "expected MEASURE = VALUE, or <, >, <=, >= between the two"
+HINT = "such as 'max joints.main.force = 10 kN'"
 LEAST_SCAN = 4  # places: fewer tell of no course
-MOST_SCAN = 100_000
+MOST_SCAN = 10_000
 
 
 def main(request: FindRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, ENDINGS, FORMATS)
-    interval, words = interval_of(request.unknown), parsed(request.condition)
-    require_counts(request)
+    interval, words = interval_of(request.unknown), condition_of(request.condition, FORM, HINT)
+    asked = measure.parse(words.measure)
+    scan, most = counts(request)
     shown = units(request.units)
     options = Options(tolerance=tolerance(request.tolerance))
     given = overrides(request.set)
-    asker = Asker(Recipe(request.spec, text_in(request.spec), (words.asked,), options, given, request.case))
-    measure.check([words.asked], asker.spec)
+    asker = Asker(Recipe(request.spec, text_in(request.spec), (asked,), options, given, request.case))
+    measure.check([asked], asker.spec)
     require_other_file(request.output, [request.spec])
-    condition = condition_of(words, at_ends(asker, interval))
-    once = AnswersOnce(asker)
-    found = look(
-        asking(once, interval, condition), interval.low, interval.high, condition.relation,
-        count=request.scan, most=request.evaluations,
-    )  # fmt: skip
+    unit = unit_of(asked.path, asker.spec)
+    value = in_si(words, unit, asker.scenes(interval), HINT)
+    condition = FindCondition(words.measure, words.sign, value, unit, words.unit)
+    with progress(request.quiet) as tell:
+        once = AnswersOnce(asker, lambda runs: tell(min(runs, 2 * scan), 2 * scan, "variants"))
+        ask = asking(once, interval, condition)
+        found = look(ask, interval.low, interval.high, condition.relation, count=scan, most=most)
     require_some(found)
     own = shown if request.units else in_unit(shown, condition)
-    page = FoundPage(asker.spec.title, condition, interval, found, request.scan, request.evaluations, own)
+    page = FoundPage(asker.spec.title, condition, interval, found, scan, most, own)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
     warn_of_variants(asker.spec, once, request.quiet)
     return int(request.strict and (not is_met(found, condition) or bool(found.unsolved)))
 
 
-def require_counts(request: FindRequest) -> None:
-    """Raise UsageError where so few places, or so many, are no scan."""
-    if not LEAST_SCAN <= request.scan <= MOST_SCAN:
-        message = f"--scan {request.scan}: accepted: {LEAST_SCAN} to {MOST_SCAN:,}"
+def counts(request: FindRequest) -> tuple[int, int]:
+    """How many variants are in the scan, and at most in all. Raises UsageError."""
+    scan = SCAN if request.scan is None else request.scan
+    most = max(MOST, 2 * scan) if request.evaluations is None else request.evaluations
+    if not LEAST_SCAN <= scan <= MOST_SCAN:
+        message = f"--scan {scan}: accepted: {LEAST_SCAN} to {MOST_SCAN:,}"
         raise UsageError(Problem("bad-option", message, hint="such as --scan 25"))
-    if request.evaluations < request.scan:
-        message = f"--evaluations {request.evaluations}: fewer than the {request.scan} of the scan"
-        raise UsageError(Problem("bad-option", message, hint="such as --evaluations 300"))
+    if most < scan:
+        message = f"--evaluations {most}: fewer than the {scan} of the scan"
+        raise UsageError(Problem("bad-option", message, hint=f"such as --evaluations {MOST}"))
+    return scan, most
 
 
-def at_ends(asker: Asker, interval: Interval) -> list[Spec]:
-    """The scenes at the ends of the interval and in its middle, those that are scenes. Raises SpecError if none is."""
-    specs: list[Spec] = []
-    errors: list[SpecError] = []
-    for x in (interval.low, interval.high, 0.5 * (interval.low + interval.high)):
-        try:
-            specs.append(asker.load({interval.name: interval.text(x)}))
-        except SpecError as error:
-            errors.append(error)
-    if not specs:
-        raise errors[0]
-    return specs
-
-
-def asking(once: AnswersOnce, interval: Interval, condition: Condition) -> Callable[[float], Sample]:
+def asking(once: AnswersOnce, interval: Interval, condition: FindCondition) -> Callable[[float], Sample]:
     """What is known of the measure at a value of the unknown."""
 
     def ask(x: float) -> Sample:
@@ -110,7 +105,7 @@ def require_some(found: CourseFindings) -> None:
         )
 
 
-def in_unit(shown: Units, condition: Condition) -> Units:
+def in_unit(shown: Units, condition: FindCondition) -> Units:
     """Units in which the measure is told: that in which its value was given."""
     if not condition.own or not condition.unit:
         return shown
@@ -118,7 +113,7 @@ def in_unit(shown: Units, condition: Condition) -> Units:
     return Units({**shown.shown, condition.unit: (condition.own, of_si / size)})
 
 
-def is_met(found: CourseFindings, condition: Condition) -> bool:
+def is_met(found: CourseFindings, condition: FindCondition) -> bool:
     """Whether the condition is met anywhere."""
     if SIDES[condition.relation]:
         return bool(found.met) or ("=" in condition.relation and bool(found.crossings or found.touches))

@@ -61,7 +61,7 @@ class SpentError(Exception):
     """As many places have been asked as may be."""
 
 
-class Course:
+class MeasureCourse:
     """What is known of g over an interval; asks for more.
 
     jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,
@@ -99,7 +99,7 @@ class Course:
     def look(self, x: float) -> Sample:
         """What is known at a place between two neighbours of a stretch; how far off it was expected is remembered."""
         i = bisect_left(self.samples, x, key=lambda sample: sample.x) - 1
-        expected = self.between(i, x)
+        expected = self.between(i, np.array([x]))
         found = self.at(x)
         if found.gap is not None:
             gap, off = float(expected.gaps[0]), float(expected.off[0])
@@ -124,13 +124,13 @@ class Course:
         known = [sample.gap for sample in self.samples if sample.gap is not None]
         return max(known) - min(known) if known else 0.0
 
-    def between(self, i: int, place: float | None = None) -> Between:
-        """What is expected between a sample and the next, of one stretch; place: there alone, else at GRID and more."""
+    def between(self, i: int, places: Array | None = None) -> Between:
+        """What is expected between a sample and the next, of one stretch; places: there alone, else at GRID."""
         one, other = self.samples[i], self.samples[i + 1]
         left, right = self.beside(i, -1), self.beside(i, 1)
         whole = [*reversed(left[: 1 if right else 2]), one, other, *right[: 1 if left else 2]]
-        x = one.x + GRID * (other.x - one.x) if place is None else np.array([place])
-        if left and right and place is None:
+        x = one.x + GRID * (other.x - one.x) if places is None else places
+        if left and right and places is None:
             x = np.sort(np.append(x, meeting(left[0], one, other, right[0])))
         expected = polynomial(whole, x)
         noise = NOISE * max(sample.error for sample in whole)

@@ -7,9 +7,8 @@ import io
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from heuncli.commands.find.condition import Condition
 from heuncli.commands.find.course import Sample
-from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, MetEdge, Touch
+from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, FindCondition, MetEdge, Touch
 from heuncli.commands.find.study import SIDES
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
@@ -36,7 +35,7 @@ class FoundPage(NamedTuple):
     """What is told: of which scene and condition, over which interval; places of the scan and at most; units."""
 
     title: str
-    condition: Condition
+    condition: FindCondition
     interval: Interval
     found: CourseFindings
     scan: int

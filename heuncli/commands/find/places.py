@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator
 from itertools import groupby
 
-from heuncli.commands.find.course import APART, Course, Sample, slope
+from heuncli.commands.find.course import APART, MeasureCourse, Sample, slope
 from heuncli.commands.find.results import CourseJump, Crossing, Met, MetEdge, Touch, UnsolvedStretch
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
@@ -28,12 +28,12 @@ class SideGroup(list[Sample]):
         return self[0].side
 
 
-def groups(course: Course) -> list[SideGroup]:
+def groups(course: MeasureCourse) -> list[SideGroup]:
     """The samples in groups of one side."""
     return [SideGroup(members) for _, members in groupby(course.samples, key=lambda sample: sample.side)]
 
 
-def meetings(course: Course) -> Iterator[Crossing | Touch | CourseJump]:
+def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump]:
     """Where the course meets its value or jumps across it."""
     found = groups(course)
     for k, group in enumerate(found):
@@ -49,7 +49,7 @@ def meetings(course: Course) -> Iterator[Crossing | Touch | CourseJump]:
                 yield Crossing(min(one, other, key=_size), other.x - one.x, group.side)
 
 
-def met_by(course: Course, group: SideGroup, before: int | None, after: int | None) -> Crossing | Touch:
+def met_by(course: MeasureCourse, group: SideGroup, before: int | None, after: int | None) -> Crossing | Touch:
     """What samples are that are not told from the value; before, after: the sides beside them."""
     best = min(group, key=_size)
     if before and before == after:
@@ -60,7 +60,7 @@ def met_by(course: Course, group: SideGroup, before: int | None, after: int | No
     return Crossing(best, error, after if before and after else 0, flat)
 
 
-def reach(course: Course, group: SideGroup, best: Sample) -> tuple[float, bool]:
+def reach(course: MeasureCourse, group: SideGroup, best: Sample) -> tuple[float, bool]:
     """How far the true place may be from a sample, and whether the slope there is too small to tell."""
     size = max(sample.error for sample in group) + _size(best)
     outer = [neighbours(course, group, way, 0.0)[:1] for way in (-1, 1)]
@@ -77,7 +77,7 @@ def reach(course: Course, group: SideGroup, best: Sample) -> tuple[float, bool]:
     return min(limit, 2.0 * size / (steep + math.sqrt(under))), False
 
 
-def slope_at(course: Course, group: SideGroup, best: Sample, size: float) -> tuple[float, float] | None:
+def slope_at(course: MeasureCourse, group: SideGroup, best: Sample, size: float) -> tuple[float, float] | None:
     """The least that |g'| may be at a sample, and |g''|/2; None where too little is known."""
     left, right = (neighbours(course, group, way, CLEAR * size) for way in (-1, 1))
     whole = [*reversed(left), best, *right]
@@ -94,7 +94,7 @@ def slope_at(course: Course, group: SideGroup, best: Sample, size: float) -> tup
     return abs(slopes[0]) - doubt, abs(bend)
 
 
-def neighbours(course: Course, group: SideGroup, way: int, clear: float) -> list[Sample]:
+def neighbours(course: MeasureCourse, group: SideGroup, way: int, clear: float) -> list[Sample]:
     """Up to two samples beside a group, the nearest first, of its stretch: off the value by more than `clear`."""
     samples = course.samples
     k = samples.index(group[0] if way < 0 else group[-1])
@@ -108,7 +108,7 @@ def neighbours(course: Course, group: SideGroup, way: int, clear: float) -> list
     return found
 
 
-def doubtful(course: Course) -> Iterator[tuple[Sample, Sample]]:
+def doubtful(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
     """Crossings whose slope is not well known, with a neighbour on another side, to be asked between."""
     found_groups = groups(course)
     for k, group in enumerate(found_groups):
@@ -125,7 +125,7 @@ def doubtful(course: Course) -> Iterator[tuple[Sample, Sample]]:
                 yield end, outer
 
 
-def unsolved(course: Course) -> Iterator[UnsolvedStretch]:
+def unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:
     """Where there is no measure."""
     samples = course.samples
     for known, members in groupby(range(len(samples)), key=lambda i: samples[i].gap is not None):
@@ -139,7 +139,7 @@ def unsolved(course: Course) -> Iterator[UnsolvedStretch]:
         yield UnsolvedStretch(low, high, code, reason, len(places))
 
 
-def met(course: Course, wanted: int, *, equal: bool) -> Iterator[Met]:
+def met(course: MeasureCourse, wanted: int, *, equal: bool) -> Iterator[Met]:
     """The stretches in which the course lies on a side; equal: the value itself meets the condition, too."""
     found = groups(course)
     open_: MetEdge | None = None
@@ -155,7 +155,7 @@ def met(course: Course, wanted: int, *, equal: bool) -> Iterator[Met]:
             yield Met(start, high)
 
 
-def edge(course: Course, last: Sample, beside: SideGroup | None) -> MetEdge:
+def edge(course: MeasureCourse, last: Sample, beside: SideGroup | None) -> MetEdge:
     """Where a stretch ends whose last sample that is."""
     if beside is None:
         return MetEdge(last.x, 0.0, "end")
@@ -173,7 +173,7 @@ def edge(course: Course, last: Sample, beside: SideGroup | None) -> MetEdge:
     return MetEdge(best.x, found.error, "crossing")
 
 
-def at_end(course: Course, group: SideGroup) -> bool:
+def at_end(course: MeasureCourse, group: SideGroup) -> bool:
     """Whether what is not told from the value lies at an end of the interval, or of what is solved."""
     samples = course.samples
     first, last = samples.index(group[0]), samples.index(group[-1])

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv")
@@ -24,14 +24,13 @@ class FindRequest(NamedTuple):
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     scan: Annotated[
-        int, Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N")
-    ] = 7
-    evaluations: Annotated[int, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")] = (
-        300
-    )
-    tolerance: Annotated[
-        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
+        int | None,
+        Option(("--scan",), "So many values are looked at first. Default: 7; more find narrower pairs.", "N"),
     ] = None
+    evaluations: Annotated[
+        int | None, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")
+    ] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
     format: Annotated[
         str | None,
         Option(

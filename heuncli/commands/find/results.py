@@ -6,8 +6,19 @@ from typing import Literal
 
 from heuncli.commands.find.course import Sample
 from heuncli.named_tuples import NamedTuple
+from heuncli.variants.conditions import Sign
 
 EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved"]
+
+
+class FindCondition(NamedTuple):
+    """A condition in SI, with the SI unit of its measure (empty: none); own: the unit in which the value was given."""
+
+    text: str
+    relation: Sign
+    value: float
+    unit: str
+    own: str
 
 
 class Crossing(NamedTuple):

@@ -12,17 +12,18 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.commands.find.course import NOISE, Between, Course, Sample, polynomial
+from heuncli.commands.find.course import NOISE, Between, MeasureCourse, Sample, polynomial
 
 INWARD = 0.1  # of an interval: a place nearer to its end than that would tell little
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: how well it is told where variants begin to fail
 LESS = 0.25  # of the gap that is left: an interpolation that gains less than that is followed by a halving
-EXTREME = 1e-6  # of the range: how well an extreme is told
+EXTREME = 1e-5  # of the range: how well an extreme is told
+NEAR_ENDS = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 1003)[1:-1])  # places in an interval, close by its ends
 MOST_STEPS = 12  # towards one extreme
 STEEP = 10.0  # times what the slope outside leads to expect: more than that across the narrowest bracket is a jump
 
 
-def search(course: Course) -> None:
+def search(course: MeasureCourse) -> None:
     """Ask until it is certain where the value is met. Raises SpentError."""
     course.scan()
     given_up: set[tuple[float, float]] = set()
@@ -42,7 +43,7 @@ def search(course: Course) -> None:
             course.look(place_between(one, other, course.between(i)))
 
 
-def crossed(course: Course) -> Iterator[int]:
+def crossed(course: MeasureCourse) -> Iterator[int]:
     """Neighbours on different sides, between which neither a crossing nor a jump is known."""
     for i, one, other in course.pairs():
         known = (one.x, other.x) in course.steep or course.parted(i)
@@ -50,7 +51,7 @@ def crossed(course: Course) -> Iterator[int]:
             yield i
 
 
-def widest(course: Course, given_up: set[tuple[float, float]]) -> int | None:
+def widest(course: MeasureCourse, given_up: set[tuple[float, float]]) -> int | None:
     """The widest two neighbours between which it is not certain what happens; None: there are none."""
     found = [
         (other.x - one.x, -i)
@@ -60,7 +61,7 @@ def widest(course: Course, given_up: set[tuple[float, float]]) -> int | None:
     return -max(found)[1] if found else None
 
 
-def unsure(course: Course, i: int) -> bool:
+def unsure(course: MeasureCourse, i: int) -> bool:
     """Whether a place between two neighbours is to be asked."""
     one, other = course.samples[i], course.samples[i + 1]
     width = other.x - one.x
@@ -76,7 +77,7 @@ def unsure(course: Course, i: int) -> bool:
     return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
 
 
-def near_jump(course: Course, one: Sample, other: Sample) -> bool:
+def near_jump(course: MeasureCourse, one: Sample, other: Sample) -> bool:
     """Whether the course jumps right beside two neighbours: towards a pole it is never certain."""
     margin = END_OF_SOLVED * course.spacing
     return any(low - margin <= one.x and other.x <= high + margin for low, high in course.jumps)
@@ -91,7 +92,7 @@ def place_between(one: Sample, other: Sample, expected: Between) -> float:
     return min(max(x, one.x + inward), other.x - inward)
 
 
-def close_in(course: Course, i: int) -> None:
+def close_in(course: MeasureCourse, i: int) -> None:
     """Narrow two neighbours of different sides down to a crossing, or to a jump.
 
     By Brent's rule: the root of the course as it is expected, and the middle wherever that has gained too little.
@@ -115,7 +116,7 @@ def close_in(course: Course, i: int) -> None:
     (course.steep if is_steep(course, one, other) else course.jumps).add((one.x, other.x))
 
 
-def beyond(course: Course, one: Sample, other: Sample) -> float:
+def beyond(course: MeasureCourse, one: Sample, other: Sample) -> float:
     """Just beyond the root, where g is hardly more than its error on this side of it; else the middle."""
     near, far = sorted((one, other), key=lambda sample: abs(sample.gap or 0.0))
     size, noise = abs(near.gap or 0.0), NOISE * max(near.error, far.error)
@@ -124,7 +125,7 @@ def beyond(course: Course, one: Sample, other: Sample) -> float:
     return near.x + way if far is other else near.x - way
 
 
-def is_steep(course: Course, one: Sample, other: Sample) -> bool:
+def is_steep(course: MeasureCourse, one: Sample, other: Sample) -> bool:
     """Whether the course outside is so steep that it goes from one side to the other in the narrowest bracket.
 
     Towards a jump it is level, towards a pole it grows.
@@ -136,7 +137,7 @@ def is_steep(course: Course, one: Sample, other: Sample) -> bool:
     return bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes)
 
 
-def root(course: Course, one: Sample, other: Sample) -> float:
+def root(course: MeasureCourse, one: Sample, other: Sample) -> float:
     """Where the course is expected to cross between two neighbours of different sides."""
     near = min((one, other), key=lambda sample: abs(sample.gap or 0.0))
     stretch = stretch_of(course, one)
@@ -153,7 +154,7 @@ def root(course: Course, one: Sample, other: Sample) -> float:
     return min(max(0.5 * (low + high), one.x + margin), other.x - margin)
 
 
-def stretch_of(course: Course, one: Sample) -> list[Sample]:
+def stretch_of(course: MeasureCourse, one: Sample) -> list[Sample]:
     """The samples of the stretch in which one stands."""
     found: list[Sample] = []
     for i, sample in enumerate(course.samples):
@@ -165,8 +166,8 @@ def stretch_of(course: Course, one: Sample) -> list[Sample]:
     return found
 
 
-def refine_extreme(course: Course, way: int) -> None:
-    """Ask where the least (way -1) or the greatest (1) of the course is expected, until it is where it was expected."""
+def refine_extreme(course: MeasureCourse, way: int) -> None:
+    """Ask where the least (way -1) or the greatest (1) of the course may be, until no more is to be expected."""
     for _ in range(MOST_STEPS):
         known = [sample for sample in course.samples if sample.gap is not None]
         best = max(known, key=lambda sample: way * (sample.gap or 0.0))
@@ -176,22 +177,17 @@ def refine_extreme(course: Course, way: int) -> None:
         course.look(place)
 
 
-def beside(course: Course, best: Sample) -> Iterator[int]:
+def beside(course: MeasureCourse, best: Sample) -> Iterator[int]:
     """The neighbours of which a sample is one, where the course goes on between them."""
     for i, one, other in course.pairs():
         if best in (one, other) and not course.parted(i) and other.x - one.x > 2.0 * course.finest:
             yield i
 
 
-def expected_gain(course: Course, i: int, best: Sample, way: int) -> tuple[float, float]:
-    """By how much g is expected to pass its best between two neighbours, and where."""
-    expected = course.between(i)
-    x, gaps = expected.places, way * expected.gaps
-    k = int(np.argmax(gaps))
-    place = float(x[k])
-    if 0 < k < len(x) - 1:  # the vertex of the parabola through the three
-        rise, fall = ((gaps[k + 1 - j] - gaps[k - j]) / max(x[k + 1 - j] - x[k - j], course.finest) for j in (0, 1))
-        bend = rise - fall
-        shift = -0.25 * (rise + fall) * (x[k + 1] - x[k - 1]) / bend if bend else 0.0
-        place = float(min(max(place + shift, x[k - 1]), x[k + 1]))
-    return float(gaps[k]) - way * (best.gap or 0.0), place
+def expected_gain(course: MeasureCourse, i: int, best: Sample, way: int) -> tuple[float, float]:
+    """By how much g may pass its best between two neighbours at most, and where."""
+    one, other = course.samples[i], course.samples[i + 1]
+    expected = course.between(i, one.x + NEAR_ENDS * (other.x - one.x))
+    most = way * expected.gaps + expected.off
+    k = int(np.argmax(most))
+    return float(most[k] - way * (best.gap or 0.0)), float(expected.places[k])

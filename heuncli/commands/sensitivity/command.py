@@ -8,6 +8,7 @@ from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
+from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
@@ -15,8 +16,8 @@ from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.sensitivity.derivative import derivative
 from heuncli.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
 from heuncli.commands.sensitivity.request import FORMATS, SensitivityRequest
-from heuncli.commands.sensitivity.results import Derivative, NoisyValue
-from heuncli.commands.sensitivity.spread import Spread, summed
+from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.commands.sensitivity.spread import NumberSpread, summed
 from heuncli.commands.sensitivity.spread_words import spreads_of
 from heuncli.errors import Problem
 from heuncli.spec.source import text_in
@@ -27,6 +28,7 @@ from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
+USUAL = 8  # variants for each number, mostly
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
 
@@ -45,12 +47,14 @@ def main(request: SensitivityRequest) -> int:
     numbers = asked_numbers(names, spreads, written)
     for number in numbers:
         asker.load({number.name: number.text(number.value)})  # a value of another dimension, or none that may be set
-    once = AnswersOnce(asker)
-    if once.of({}).code:
-        asker.study({})  # raises its own error, with its place
     texts = zip(request.measure, recipe.measures, strict=True)
     heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
-    found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
+    most = 1 + USUAL * len(numbers)
+    with progress(request.quiet) as tell:
+        once = AnswersOnce(asker, lambda runs: tell(min(runs, most), most, "variants"))
+        if once.of({}).code:
+            asker.study({})  # raises its own error, with its place
+        found = [findings(once, (k, unit), numbers, spreads) for k, (_, unit) in enumerate(heads)]
     page = SensitivityPage(spec.title, tuple(numbers), tuple(heads), tuple(found), once.runs, shown)
     emit(FORMS[form](page), request.output)
     say_what_stays(request.units, form, request.quiet)
@@ -80,7 +84,9 @@ def recipe_of(request: SensitivityRequest, path: str) -> Recipe:
     return Recipe(path, text_in(path), measures, options, overrides(request.set), request.case)
 
 
-def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: WrittenNumbers) -> list[WrittenNumber]:
+def asked_numbers(
+    names: Sequence[str], spreads: Sequence[NumberSpread], written: WrittenNumbers
+) -> list[WrittenNumber]:
     """The numbers that are named, and those with a spread; where there are none, all parameters."""
     found = {name: written.named(name) for name in names} | {each.number.name: each.number for each in spreads}
     numbers = [*found.values()] or list(written.all())
@@ -91,7 +97,7 @@ def asked_numbers(names: Sequence[str], spreads: Sequence[Spread], written: Writ
 
 
 def findings(
-    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[Spread]
+    once: AnswersOnce, which: tuple[int, str], numbers: Sequence[WrittenNumber], spreads: Sequence[NumberSpread]
 ) -> MeasureFindings:
     """What one measure, by its place and its unit, hangs on."""
     ask = asking(once, which, {number.name: number for number in numbers})
@@ -100,7 +106,7 @@ def findings(
     return MeasureFindings(ask({}), slopes, total)
 
 
-def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> Derivative:
+def slope_of(ask: Callable[[Mapping[str, float]], NoisyValue], number: WrittenNumber) -> NoisyDerivative:
     """The derivative by one number; one that is 0 is taken to matter over its unit."""
     return derivative(lambda x: ask({number.name: x} if x else {}), number.value, abs(number.value) or 1.0)
 

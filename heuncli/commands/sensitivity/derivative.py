@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from heuncli.commands.sensitivity.results import Derivative, NoisyValue
+from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
 from heuncli.named_tuples import NamedTuple
 from heuncli.tolerances import EPS
 
@@ -82,11 +82,11 @@ class Differences:
         return abs(found), 4.0 * self.error(0.0, h, -h) / h
 
 
-def derivative(ask: Callable[[float], NoisyValue], at: float, size: float) -> Derivative:
+def derivative(ask: Callable[[float], NoisyValue], at: float, size: float) -> NoisyDerivative:
     """dm/dp at a number; ask: m at a distance from it; size: over which the number is expected to matter."""
     about = Differences(ask, at)
     if about.base.value is None:
-        return Derivative(None, kind="refused", why=about.base.why)
+        return NoisyDerivative(None, kind="refused", why=about.base.why)
     h = first_step(about.base, size)
     for _ in range(2):
         below, above = about.solved(-h, -0.5 * h), about.solved(h, 0.5 * h)
@@ -95,7 +95,7 @@ def derivative(ask: Callable[[float], NoisyValue], at: float, size: float) -> De
         if (below or above) and about.solved(*(0.25 * h * (1 if above else -1) * k for k in (1, 2, 4))):
             return one_sided(about, h, 1 if above else -1, size)
         h /= 64.0
-    return Derivative(None, kind="refused", why=ask(64.0 * h).why)
+    return NoisyDerivative(None, kind="refused", why=ask(64.0 * h).why)
 
 
 def first_step(base: NoisyValue, size: float) -> float:
@@ -107,10 +107,10 @@ def first_step(base: NoisyValue, size: float) -> float:
     return step * size
 
 
-def central(about: Differences, h: float, size: float) -> Derivative:
+def central(about: Differences, h: float, size: float) -> NoisyDerivative:
     """By differences on both sides."""
     if all(about.value(x) == about.value(0.0) for x in (h, -h, 0.5 * h, -0.5 * h)):
-        return Derivative(0.0, kind="nothing", step=h)
+        return NoisyDerivative(0.0, kind="nothing", step=h)
     best = best_pair(about.pair, lambda x: about.solved(x, -x, 0.5 * x, -0.5 * x), h, size)
     odd = not_smooth(about, best.step)
     if odd is not None:
@@ -119,19 +119,19 @@ def central(about: Differences, h: float, size: float) -> Derivative:
         reason = (
             f"two steps differ by {best.difference:.2g} of {best.value:.3g}: it jumps or bends right beside the value"
         )
-        return Derivative(None, kind="refused", why=(NOT_SMOOTH, reason), step=best.step)
-    return Derivative(best.value, best.error, step=best.step)
+        return NoisyDerivative(None, kind="refused", why=(NOT_SMOOTH, reason), step=best.step)
+    return NoisyDerivative(best.value, best.error, step=best.step)
 
 
-def one_sided(about: Differences, h: float, way: int, size: float) -> Derivative:
+def one_sided(about: Differences, h: float, way: int, size: float) -> NoisyDerivative:
     """By differences on the side that is solved."""
     best = best_pair(
         lambda x: about.side(x, way), lambda x: about.solved(*(0.25 * x * way * k for k in (1, 2, 4))), h, size
     )
     why = about.ask(-way * h).why
     if best.difference > CLEAR * best.noise and best.difference > DOUBT * abs(best.value):
-        return Derivative(None, kind="refused", why=why, step=best.step)
-    return Derivative(best.value, best.error, "one-sided", why, step=best.step)
+        return NoisyDerivative(None, kind="refused", why=why, step=best.step)
+    return NoisyDerivative(best.value, best.error, "one-sided", why, step=best.step)
 
 
 def best_pair(pair: Callable[[float], StepPair], solved: Callable[[float], bool], h: float, size: float) -> StepPair:
@@ -155,7 +155,7 @@ def best_pair(pair: Callable[[float], StepPair], solved: Callable[[float], bool]
     return best
 
 
-def not_smooth(about: Differences, h: float) -> Derivative | None:
+def not_smooth(about: Differences, h: float) -> NoisyDerivative | None:
     """What is told where the measure bends or jumps at the number itself; None: it does not."""
     (whole, _), (half, noise) = about.bend(h), about.bend(0.5 * h)
     if half <= CLEAR * noise or half <= BENDS * whole or not about.solved(0.25 * h, -0.25 * h):
@@ -165,8 +165,10 @@ def not_smooth(about: Differences, h: float) -> Derivative | None:
         return None
     if quarter > JUMPS * half:
         change = quarter * 0.25 * h
-        return Derivative(None, kind="refused", why=(NOT_SMOOTH, f"it jumps at the value, by {change:.3g}"), step=h)
+        return NoisyDerivative(
+            None, kind="refused", why=(NOT_SMOOTH, f"it jumps at the value, by {change:.3g}"), step=h
+        )
     left, right = about.side(h, -1), about.side(h, 1)
     ends = (left.value, left.error), (right.value, right.error)
     reason = "it bends at the value: left and right of it the derivatives differ"
-    return Derivative(None, kind="kink", why=("kink", reason), left=ends[0], right=ends[1], step=h)
+    return NoisyDerivative(None, kind="kink", why=("kink", reason), left=ends[0], right=ends[1], step=h)

@@ -7,7 +7,7 @@ import io
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from heuncli.commands.sensitivity.results import Contribution, Derivative, NoisyValue, SpreadSum
+from heuncli.commands.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import rough
 from heuncli.report.error_digits import with_digits
@@ -39,7 +39,7 @@ class MeasureFindings(NamedTuple):
     """What one measure hangs on: its value, its derivatives by the names of numbers, and what spreads make of it."""
 
     base: NoisyValue
-    slopes: Mapping[str, Derivative]
+    slopes: Mapping[str, NoisyDerivative]
     spread: SpreadSum | None
 
 
@@ -114,7 +114,7 @@ def _rows(
     yield (*lead, with_digits(value, error), rough(error), per, percent, _note(slope))
 
 
-def _note(slope: Derivative) -> str:
+def _note(slope: NoisyDerivative) -> str:
     if slope.kind == "nothing":
         return "nothing hangs on it"
     if slope.kind == "one-sided":

@@ -17,7 +17,7 @@ class NoisyValue(NamedTuple):
     why: tuple[str, str] = ("", "")
 
 
-class Derivative(NamedTuple):
+class NoisyDerivative(NamedTuple):
     """dm/dp within an error, in units of m and p.
 
     kind: "nothing" hangs on it, it is known from one side alone, it bends there (left and right of it, each with its

@@ -12,14 +12,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.commands.sensitivity.results import Contribution, Derivative, NoisyValue, SpreadSum
+from heuncli.commands.sensitivity.results import Contribution, NoisyDerivative, NoisyValue, SpreadSum
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.written import WrittenNumber
 
 LINEAR = 0.05  # of what the derivative says
 
 
-class Spread(NamedTuple):
+class NumberSpread(NamedTuple):
     """A number and how far it may lie from its value, each way, in its unit."""
 
     number: WrittenNumber
@@ -29,7 +29,7 @@ class Spread(NamedTuple):
 Ask = Callable[[Mapping[str, float]], NoisyValue]  # a measure, at distances of numbers from their values
 
 
-def summed(ask: Ask, spreads: Sequence[Spread], slopes: Mapping[str, Derivative]) -> SpreadSum:
+def summed(ask: Ask, spreads: Sequence[NumberSpread], slopes: Mapping[str, NoisyDerivative]) -> SpreadSum:
     """What spreads make of a measure; slopes: dm/dp by name."""
     base = ask({})
     each = tuple(contribution(ask, base, spread, slopes[spread.number.name]) for spread in spreads)
@@ -44,7 +44,7 @@ def summed(ask: Ask, spreads: Sequence[Spread], slopes: Mapping[str, Derivative]
     return SpreadSum(each, worst, (root, error), corners)
 
 
-def contribution(ask: Ask, base: NoisyValue, spread: Spread, slope: Derivative) -> Contribution:
+def contribution(ask: Ask, base: NoisyValue, spread: NumberSpread, slope: NoisyDerivative) -> Contribution:
     """What the spread of one number makes of a measure."""
     name, t = spread.number.name, spread.size
     below, above = (_change(ask({name: way * t}), base) for way in (-1.0, 1.0))
@@ -59,7 +59,9 @@ def contribution(ask: Ask, base: NoisyValue, spread: Spread, slope: Derivative) 
     return Contribution(name, t, spread.number.unit, size, error, linear, *at_ends)
 
 
-def _agree(slope: Derivative, t: float, below: tuple[float, float] | None, above: tuple[float, float] | None) -> bool:
+def _agree(
+    slope: NoisyDerivative, t: float, below: tuple[float, float] | None, above: tuple[float, float] | None
+) -> bool:
     """Whether what is found at both ends is what the derivative says."""
     said = (slope.value or 0.0) * t
     for way, found in ((-1.0, below), (1.0, above)):
@@ -75,7 +77,7 @@ def _change(found: NoisyValue, base: NoisyValue) -> tuple[float, float] | None:
     return found.value - base.value, found.error + base.error
 
 
-def _way(one: Contribution, slope: Derivative) -> float:
+def _way(one: Contribution, slope: NoisyDerivative) -> float:
     """In which way a number raises the measure."""
     if slope.value is not None:
         return math.copysign(1.0, slope.value)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.commands.sensitivity.spread import Spread
+from heuncli.commands.sensitivity.spread import NumberSpread
 from heuncli.errors import Finding
 from heuncli.expressions.units import describe, parse_unit
 from heuncli.variants.axes import AxisError, at_top_level, figure_of, name_and_values
@@ -12,15 +12,15 @@ FORM = "expected NAME=VALUE,..., how far each may lie from its value"
 HINT = "such as --spread L=0.1mm,e=0.02mm"
 
 
-def spreads_of(words: str, written: WrittenNumbers) -> list[Spread]:
+def spreads_of(words: str, written: WrittenNumbers) -> list[NumberSpread]:
     """The spreads of numbers, each in its number's unit. Raises AxisError."""
-    found: dict[str, Spread] = {}
+    found: dict[str, NumberSpread] = {}
     for word in at_top_level(words):
         name, value = name_and_values(word.strip(), FORM, HINT)
         if name in found:
             raise AxisError(name, "has two spreads", HINT)
         number = written.named(name)
-        found[name] = Spread(number, _size(word.strip(), value, number))
+        found[name] = NumberSpread(number, _size(word.strip(), value, number))
     return [*found.values()]
 
 

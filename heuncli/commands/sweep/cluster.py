@@ -25,7 +25,7 @@ from typing import Any
 from heuncli.cli.entry import UsageError
 from heuncli.commands.sweep.cluster_door import PATIENCE, ClusterGone, connected
 from heuncli.commands.sweep.cluster_lots import WORKERS, Lot, Lots
-from heuncli.commands.sweep.cluster_members import Member, Members, Task, named
+from heuncli.commands.sweep.cluster_members import ClusterTask, Member, Members, named
 from heuncli.commands.sweep.cluster_worker import PartAnswered, Variant, in_words
 from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import Problem
@@ -176,7 +176,7 @@ class _Sweeping:
                 if member.has_room(alone=False) and (lot := self.lots.next(member.pace.size, len(able))) is not None:
                     self.members.give(member, lot)
 
-    def _take(self, key: str, task: Task) -> Iterator[Numbered]:
+    def _take(self, key: str, task: ClusterTask) -> Iterator[Numbered]:
         """What a task has come to. Raises ClusterGone."""
         status = task.future.status
         if status == "error":
@@ -196,7 +196,7 @@ class _Sweeping:
                 for lot in [task.lot, *others] if task.lot is not None else others:
                     self.lots.unanswered(lot, 0)
 
-    def _finished(self, key: str, task: Task) -> Iterator[Numbered]:
+    def _finished(self, key: str, task: ClusterTask) -> Iterator[Numbered]:
         """The answers of a task that is done."""
         try:
             found = task.future.result(timeout=FETCH)
@@ -230,7 +230,7 @@ class _Sweeping:
             reason = f"the worker that solved it went away, {WORKERS} times and with nothing else to do"
             yield _number(lot.variants[0]), Answer(code=WORKER_DIED, reason=reason)
 
-    def _cannot(self, task: Task, why: str) -> None:
+    def _cannot(self, task: ClusterTask, why: str) -> None:
         """A worker cannot do what it is asked; its lots go to others."""
         self.members.refuse(task.member, why)
         if task.lot is not None:

@@ -37,7 +37,7 @@ class Member:
         return self.able and len(self.lots) < (1 if alone else DEPTH)
 
 
-class Task:
+class ClusterTask:
     """A task that is under way: at whom, and its future; lot: None while a worker is asked what it has."""
 
     def __init__(self, member: Member, lot: Lot | None) -> None:
@@ -53,7 +53,7 @@ class Members:
         """ended: called with the key of a task that has come to its end, in another thread."""
         self.client, self.recipe, self.ended = client, recipe, ended
         self.known: dict[str, Member] = {}
-        self.tasks: dict[str, Task] = {}
+        self.tasks: dict[str, ClusterTask] = {}
         self.remarks: dict[str, list[str]] = {}  # what is to be told of workers: their addresses
         self.mine = described()
         self.keys = (f"heun-{client.id}-{number}" for number in count())
@@ -75,7 +75,7 @@ class Members:
         for address, threads in there.items():
             if address not in self.known:
                 member = self.known[address] = Member(address, threads)
-                self._begin(Task(member, None), eval, HELLO)
+                self._begin(ClusterTask(member, None), eval, HELLO)
         if not there and self.call is None:
             self.call = self.client.submit(eval, "None", key=next(self.keys))
         elif there:
@@ -93,17 +93,17 @@ class Members:
         """A lot for a worker."""
         if member.held is None:
             member.held = self._submit(member, next(self.keys), HeldRecipe, self.recipe)
-        task = Task(member, lot)
+        task = ClusterTask(member, lot)
         member.lots[self._begin(task, answered, member.held, lot.variants, SECONDS)] = lot
 
-    def takes(self, key: str) -> Task | None:
+    def takes(self, key: str) -> ClusterTask | None:
         """The task of a key, which is no longer under way."""
         task = self.tasks.pop(key, None)
         if task is not None:
             task.member.lots.pop(key, None)
         return task
 
-    def waits_on(self, key: str, task: Task) -> None:
+    def waits_on(self, key: str, task: ClusterTask) -> None:
         """A task whose result does not come yet, or not at all."""
         task.misses += 1
         self.tasks[key] = task
@@ -156,7 +156,7 @@ class Members:
         if under_way:
             self.client.cancel(under_way, force=True)
 
-    def _begin(self, task: Task, function: Any, *given: Any) -> str:
+    def _begin(self, task: ClusterTask, function: Any, *given: Any) -> str:
         """Send a task to its worker; returns its key."""
         key = next(self.keys)
         task.future = self._submit(task.member, key, function, *given)
@@ -169,7 +169,7 @@ class Members:
             function, *given, key=key, workers=[member.address], allow_other_workers=False, pure=False
         )
 
-    def _watch(self, key: str, task: Task) -> None:
+    def _watch(self, key: str, task: ClusterTask) -> None:
         task.future.add_done_callback(lambda _: self.ended(key))
 
 

@@ -8,7 +8,7 @@ from heuncli.cli import jobs, measure, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
-from heuncli.cli.solving import overrides, positive, tolerance
+from heuncli.cli.solving import overrides, solver_options, spec_among
 from heuncli.cli.target import format_of, require_room
 from heuncli.cli.units import units
 from heuncli.commands.sweep.checks import problems_of, warnings_of
@@ -23,10 +23,10 @@ from heuncli.commands.sweep.store import Store
 from heuncli.commands.sweep.table import axes_in
 from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
 from heuncli.errors import Problem, SpecError
+from heuncli.records import replace
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
 from heuncli.study.model.memory_estimate import Room
-from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys
@@ -42,7 +42,7 @@ def main(request: SweepRequest) -> int:
     how = telling_of(request)
     if request.show is not None:
         return show(request, how)
-    path, words = spec_and_axes(request.words)
+    path, words = spec_among(request.words, "sweep", USAGE)
     shard = shard_of(request.shard)
     _require_files(request, path)
     recipe = recipe_of(request, path)
@@ -69,15 +69,6 @@ def telling_of(request: SweepRequest) -> Telling:
     return how
 
 
-def spec_and_axes(words: Sequence[str]) -> tuple[str, list[str]]:
-    """The spec's file, and what is varied. Raises UsageError."""
-    files = [word for word in words if "=" not in word]
-    if len(files) != 1:
-        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"sweep: {found}", hint=USAGE))
-    return files[0], [word for word in words if "=" in word]
-
-
 def recipe_of(request: SweepRequest, path: str) -> Recipe:
     """What every variant is made of. Raises UsageError, SpecError."""
     if not request.measure:
@@ -90,15 +81,8 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
         hint = "leave --jobs out: on a cluster as many work as there are workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask do not go together", hint=hint))
     room, each = memory.room("table")
-    options = Options(
-        tolerance=tolerance(request.tolerance),
-        method=request.method,
-        step=positive("--step", request.step),
-        least_norm=request.least_norm,
-        reduce=not request.no_reduce,
-        time_limit=request.time_limit_each,
-        room=Room(room / jobs.most(request.jobs), each) if request.dask is None else None,
-    )
+    own = Room(room / jobs.most(request.jobs), each) if request.dask is None else None
+    options = replace(solver_options(request), time_limit=request.time_limit_each, room=own)
     measures = tuple(measure.parse_all(request.measure))
     return Recipe(path, text_in(path), measures, options, overrides(request.set))
 

@@ -7,21 +7,23 @@ from collections.abc import Sequence
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
+from heuncli.cli.solving import spec_among
 from heuncli.commands.tune.request import TuneRequest
 from heuncli.commands.tune.results import Constraint, Goal, TunedVariable, TuneTask
-from heuncli.errors import Problem, SpecError
+from heuncli.errors import Problem
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.variants.asking import Asker
 from heuncli.variants.axes import INTERVAL_HINT, AxisError, Interval, interval_of
-from heuncli.variants.conditions import FORM, HINT, MeasureCondition, condition_of, in_si
+from heuncli.variants.conditions import MeasureCondition, condition_of, in_si
 from heuncli.variants.stated import unit_of
 
+FORM = "expected MEASURE < VALUE"
+HINT = "such as 'max abs sections.web.M2 < 40 N*m'"
 EACH = 200  # evaluations by default: for each variable, and once more
 MOST_EVALUATIONS = 1_000_000
-LOOKED_AT = (0.5, 0.0, 1.0, 0.25, 0.75)  # places of an interval at which it is seen whether its values fit
 
 
 class AskedTuning(NamedTuple):
@@ -54,18 +56,15 @@ def asked_by(request: TuneRequest) -> AskedTuning:
 
 def spec_and_intervals(words: Sequence[str]) -> tuple[str, list[Interval]]:
     """The spec's file, and what is varied. Raises UsageError, AxisError."""
-    files = [word for word in words if "=" not in word]
-    if len(files) != 1:
-        found = f"{len(files)} files: {', '.join(files)}" if files else "no spec is named"
-        raise UsageError(Problem("bad-option", f"tune: {found}", hint="heun tune SPEC NAME=LOW:HIGH --minimise WHAT"))
-    intervals = [interval_of(word) for word in words if "=" in word]
+    path, given = spec_among(words, "tune", "heun tune SPEC NAME=LOW:HIGH --minimise WHAT")
+    intervals = [interval_of(word) for word in given]
     names = [interval.name for interval in intervals]
     if not names:
         raise UsageError(Problem("bad-option", "tune: nothing is varied", hint=INTERVAL_HINT))
     for name in names:
         if names.count(name) > 1:
             raise AxisError(name, "is varied twice", "one interval a parameter")
-    return files[0], intervals
+    return path, intervals
 
 
 def _constraint(text: str) -> MeasureCondition:
@@ -80,14 +79,13 @@ def task_of(request: TuneRequest, asked: AskedTuning, asker: Asker) -> TuneTask:
     spec, measures = asker.spec, asker.recipe.measures
     measure.check(measures, spec)
     goal, *others = measures
+    scenes = [spec, *(scene for interval in asked.intervals for scene in asker.scenes(interval))]
     constraints = []
     for condition, one in zip(asked.conditions, others, strict=True):
         unit = unit_of(one.path, spec)
         sign = condition.sign
         assert sign != "="
-        constraints.append(Constraint(condition.measure, sign, in_si(condition, unit), unit))
-    for interval in asked.intervals:
-        require_fit(interval, asker)
+        constraints.append(Constraint(condition.measure, sign, in_si(condition, unit, scenes, HINT), unit))
     return TuneTask(
         variables=tuple(variable_of(interval, spec) for interval in asked.intervals),
         goal=Goal(asked.goal, unit_of(goal.path, spec), asked.greatest),
@@ -96,19 +94,6 @@ def task_of(request: TuneRequest, asked: AskedTuning, asker: Asker) -> TuneTask:
         precision=precision(request),
         seed=seed(request),
     )
-
-
-def require_fit(interval: Interval, asker: Asker) -> None:
-    """Whether the scene has such a parameter, and takes such values at all. Raises SpecError where none does."""
-    errors: list[SpecError] = []
-    for place in LOOKED_AT:
-        try:
-            asker.load({interval.name: interval.text(interval.low + place * (interval.high - interval.low))})
-        except SpecError as error:
-            errors.append(error)
-        else:
-            return
-    raise errors[0]
 
 
 def variable_of(interval: Interval, spec: Spec) -> TunedVariable:

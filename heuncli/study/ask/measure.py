@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal
@@ -74,7 +75,7 @@ def value(asked: MeasureRequest, study: Study) -> Peak:
             raise several(path, there)
         return Peak(float(there.values.reshape(())), None)
     if asked.how in ("max", "min", "abs"):
-        return peak(study, path, asked.how)
+        return of_all(peak(study, path, asked.how))
     if asked.how == "at":
         at = instant_of(asked, results.time)
         there = find(study.resample(np.array([at])), path)
@@ -204,12 +205,17 @@ def peak(study: Study, path: str, how: str, times: Array | None = None) -> Peak:
         )  # fmt: skip
     bounds = study.extremes(searched, report_of(path), times=times)
     low, high = float(bounds.low[0]), float(bounds.high[0])
-    if how == "abs" and abs(low) > abs(high):
-        how, low = "min", abs(low)
-    result, at = (low + 0.0, bounds.low_at) if how == "min" else (high + 0.0, bounds.high_at)
-    place = bounds.places[0][0 if how == "min" else 1] if bounds.places else None
+    lower = how == "min" or (how == "abs" and abs(low) > abs(high))
+    result, at = (low, bounds.low_at) if lower else (high, bounds.high_at)
+    result = (abs(result) if how == "abs" else result) + 0.0
+    place = bounds.places[0][0 if lower else 1] if bounds.places else None
     value = float(np.sqrt(np.abs(result))) if even else result
     return Peak(value, float(at[0]), place, float(min(open_at)) if open_at else None)
+
+
+def of_all(found: Peak) -> Peak:
+    """The extreme of a whole run: open where the quantity is open at some instant, for there it may be any number."""
+    return found if found.open_at is None else found._replace(value=math.nan, at=found.open_at, place=None)
 
 
 def stated_error(study: Study, keys: Sequence[str]) -> float:

@@ -1,0 +1,96 @@
+"""Derivatives of what is known within an error: the error that is told of them covers how far they are off.
+
+The functions are known, with noise of the size that is stated for them, as measures of runs have it, and no less.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from heuncli.commands.sensitivity.derivative import derivative
+from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
+
+Function = Callable[[float], float]
+
+
+def told(f: Function, at: float, error: float, seed: int = 0) -> NoisyDerivative:
+    """The derivative of a function at a number, from values within an error relative to 1 + |f|."""
+
+    def ask(distance: float) -> NoisyValue:
+        try:
+            value = f(at + distance)
+        except ValueError:
+            return NoisyValue(None, why=("beyond", "not defined there"))
+        size = error * (1.0 + abs(value))
+        return NoisyValue(value + size * math.sin(1e9 * distance + seed), size)
+
+    return derivative(ask, at, abs(at) or 1.0)
+
+
+@pytest.mark.parametrize("seed", range(120))
+def test_errors_cover_random_functions(seed: int) -> None:
+    rng = np.random.default_rng([3, seed])
+    a, b, c, at = rng.normal(), rng.uniform(0.1, 12.0), rng.uniform(0.0, 6.0), rng.uniform(0.05, 3.0)
+    error = 10.0 ** rng.uniform(-13.0, -5.0)
+    f, slope = (
+        (lambda x: a * math.sin(b * x + c), a * b * math.cos(b * at + c)),
+        (lambda x: a * math.exp(-b * x / 4.0), -a * b / 4.0 * math.exp(-b * at / 4.0)),
+        (lambda x: a / (x + 0.1), -a / (at + 0.1) ** 2),
+        (lambda x: a * x**3 - b * x, 3.0 * a * at**2 - b),
+        (lambda x: a + b * x, b),
+        (lambda x: math.sqrt(b + x * x), at / math.sqrt(b + at * at)),
+    )[seed % 6]
+    one = told(f, at, error, seed)
+    assert one.kind == "" and one.value is not None
+    assert abs(one.value - slope) <= one.error
+    assert one.error <= 300.0 * error ** (2.0 / 3.0) * (1.0 + abs(a)) * (1.0 + b) ** 3 / at  # and is of use
+
+
+@pytest.mark.parametrize("at", [0.0, 0.7, -12.0])
+@pytest.mark.parametrize("bend", [1.0, 0.1, 1e-2])
+def test_a_bend_at_the_number_tells_both_slopes(at: float, bend: float) -> None:
+    one = told(lambda x: 0.3 * x + bend * abs(x - at) + (x - at) ** 2, at, 1e-11)
+    assert one.kind == "kink" and one.left is not None and one.right is not None
+    assert abs(one.left[0] - (0.3 - bend)) <= one.left[1] < 1e-3 + bend
+    assert abs(one.right[0] - (0.3 + bend)) <= one.right[1] < 1e-3 + bend
+
+
+@pytest.mark.parametrize("height", [10.0, 0.1, 1e-3])
+def test_a_jump_at_the_number_is_refused(height: float) -> None:
+    one = told(lambda x: x + (height if x > 2.0 else 0.0), 2.0, 1e-11)
+    assert one.kind == "refused" and one.value is None and one.why[0] == "not-smooth"
+
+
+@pytest.mark.parametrize("distance", [1e-1, 1e-2, 1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("height", [1.0, 1e-2])
+def test_a_jump_beside_it_is_covered_or_refused(distance: float, height: float) -> None:
+    one = told(lambda x: math.sin(x) + (height if x > 1.0 + distance else 0.0), 1.0, 1e-10)
+    assert one.value is None or abs(one.value - math.cos(1.0)) <= one.error
+
+
+def test_a_bound_leaves_one_side() -> None:
+    one = told(lambda x: math.sqrt(1.0 - x) if x <= 0.5 else math.sqrt(-1.0), 0.5, 1e-11)
+    assert one.kind == "one-sided" and one.why[0] == "beyond" and one.value is not None
+    assert abs(one.value + 0.5 / math.sqrt(0.5)) <= one.error < 1e-3
+
+
+def test_the_same_bits_are_nothing() -> None:
+    one = derivative(lambda x: NoisyValue(3.25, 1e-9), 1.0, 1.0)
+    assert (one.kind, one.value, one.error) == ("nothing", 0.0, 0.0)
+    assert derivative(lambda x: NoisyValue(None, why=("open", "")), 1.0, 1.0).why[0] == "open"
+
+
+def test_steps_are_few() -> None:
+    """A base, and mostly two steps on either side: a smooth measure that is known to nine digits."""
+    asked: set[float] = set()
+
+    def ask(x: float) -> NoisyValue:
+        asked.add(x)
+        return NoisyValue(math.exp(x), 1e-9 * math.exp(x))
+
+    derivative(ask, 1.0, 1.0)
+    assert len(asked) <= 9
