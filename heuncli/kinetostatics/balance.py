@@ -16,11 +16,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import inertia_loads
-from heuncli.kinetostatics.reactions import in_plane
+from heuncli.kinetostatics.foundation import inertia_rows
 from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows
+from heuncli.shapes.by_component import cross, squares
 
 AT_ONCE = 100_000  # instants times actions that are added up together
 
@@ -34,27 +33,31 @@ def balance_residual(
     What rounding of the instant's largest load makes, added up from body to body, stays below UNBALANCED, however
     little the body bears itself.
     """
-    ma, spin = inertia_loads(mechanism, states)
+    ma, spin = inertia_rows(mechanism, states)
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
-    force, moment = weight - ma, -spin
-    largest = inertia.copy()
+    force, moment = weight[..., None] - ma, -spin
+    largest = inertia.T.copy()
 
     acting = [(end, F, M) for action in actions for end, F, M in action.on_bodies() if end.body != GROUND]
-    many = max(1, AT_ONCE // max(len(states.x), 1))
+    many = max(1, AT_ONCE // max(len(inertia), 1))
     for first in range(0, len(acting), many):
         ends, forces, moments = zip(*acting[first : first + many], strict=True)
-        F, M = np.stack(forces, axis=1), np.stack(moments, axis=1)
-        position = np.stack([end.position for end in ends], axis=1)
-        about_centre = M + cross_rows(position - states.centre[:, [end.body for end in ends]], F)
-        of_action = np.maximum(np.abs(F).max(axis=2), np.abs(M).max(axis=2) / size)
+        F, M, position = (by_action(x) for x in (forces, moments, [end.position for end in ends]))
+        about_centre = M + cross(position - states.rows_of("centre")[[end.body for end in ends]], F)
+        of_action = np.maximum(np.abs(F).max(axis=1), np.abs(M).max(axis=1) / size)
         for k, body in enumerate(end.body for end in ends):
-            force[:, body] += F[:, k]
-            moment[:, body] += about_centre[:, k]
-            np.maximum(largest[:, body], of_action[:, k], out=largest[:, body])
+            force[body] += F[k]
+            moment[body] += about_centre[k]
+            np.maximum(largest[body], of_action[k], out=largest[body])
     if mechanism.planar:
-        force, moment = in_plane(force, moment)
-    residual = np.maximum(np.sqrt(np.sum(force**2, axis=2)), np.sqrt(np.sum(moment**2, axis=2)) / size)
-    rounding = tolerances.SUM_ROUNDING * len(mechanism.bodies) * largest.max(axis=1, keepdims=True, initial=0.0)
+        force, moment = force * np.array([[1.0], [1.0], [0.0]]), moment * np.array([[0.0], [0.0], [1.0]])
+    residual = np.maximum(np.sqrt(squares(force)), np.sqrt(squares(moment)) / size)
+    rounding = tolerances.SUM_ROUNDING * len(mechanism.bodies) * largest.max(axis=0, initial=0.0)
     scale = np.maximum(largest, rounding / tolerances.UNBALANCED)
     scale[scale == 0.0] = 1.0
     return float((residual / scale).max(initial=0.0))
+
+
+def by_action(vectors: Sequence[Array]) -> Array:
+    """Vectors of actions, (n_t, 3) each, by component, (k, 3, n_t)."""
+    return np.ascontiguousarray(np.stack(vectors).transpose(0, 2, 1))

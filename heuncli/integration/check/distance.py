@@ -12,7 +12,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.results import Array, Indices
-from heuncli.shapes.by_component import largest, rows
+from heuncli.shapes.by_component import largest
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
@@ -22,8 +22,11 @@ ROUNDED_UP = 1.0 + 1e-9  # more than rounding makes of a distance
 
 def motion_error(marks: Marks, bodies: Table, count: int, size: float) -> Array:
     """Estimated error of any point, relative to the size, (n,); bodies: the answers' of so many runs."""
-    far = np.abs(bodies[0::count]["r"]).max(axis=(1, 2)) / size
-    apart = np.max([points_apart(marks, bodies, count, size, k) for k in range(count - 1)], axis=0)
+    r, R = (bodies[name].reshape(-1, count, *bodies[name].shape[1:]) for name in ("r", "R"))
+    far = np.abs(r[:, 0]).max(axis=(1, 2)) / size
+    one, other = np.triu_indices(count, 1)  # each of all pairs
+    squares = marks.squares(r[:, other] - r[:, one], R[:, other] - R[:, one])
+    apart = np.sqrt(squares.max(axis=(1, 2))) / size
     return known(2.0 * apart + tolerances.PLACE_ROUNDING * np.maximum(far, 1.0))
 
 
@@ -34,12 +37,12 @@ def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: flo
     attitudes Q R and R an angle θ apart differ by |(Q - 1) R a| <= 2 sin(θ/2) |a|, and the squares of all nine elements
     add up to 8 sin²(θ/2). That takes a tenth of a look at all points, and leaves few instants to look at these.
     """
-    bodies = len(marks.reach)
-    r, R = (rows(several.bodies[name]).reshape(bodies, -1, len(several.times)) for name in ("r", "R"))
-    far, apart = largest(r[..., 0::count]) / size, np.zeros(len(several.times) // count)
+    n = len(several.times) // count
+    r, R = (of_each_run(several.bodies[name], count).reshape(count, len(marks.reach), -1, n) for name in ("r", "R"))
+    far, apart = largest(r[0]) / size, np.zeros(n)
     for k in range(count - 1):
         for other in range(k + 1, count):
-            dr, dR = (x[..., other::count] - x[..., k::count] for x in (r, R))
+            dr, dR = (x[other] - x[k] for x in (r, R))
             turned = np.sqrt(0.5 * (dR * dR).sum(axis=1)) + tolerances.SUM_ROUNDING
             off = np.sqrt((dr * dr).sum(axis=1)) + turned * marks.reach[:, None]
             np.maximum(apart, off.max(axis=0), out=apart)
@@ -59,6 +62,12 @@ def bounded_motion_error(marks: Marks, several: Recovered, count: int, size: flo
         bound[others] = error(others)
     bound[first] = exact
     return bound
+
+
+def of_each_run(values: Array, count: int) -> Array:
+    """Values (c n, ...) of so many runs, instant by instant, as those of one run after the other, (c, ..., n)."""
+    each = values.reshape(-1, count, *values.shape[1:])
+    return np.ascontiguousarray(each.transpose(1, *range(2, each.ndim), 0))
 
 
 def points_apart(marks: Marks, bodies: Table, count: int, size: float, first: int = 0) -> Array:
@@ -124,6 +133,13 @@ class Marks:
 
     def apart(self, a: Table, b: Table) -> Array:
         """Largest distance of any of the points between two sets of `Recovered.bodies`, (n_t,) [m]."""
-        dR, dr = b["R"] - a["R"], b["r"] - a["r"]
-        d = dr[:, self.owner] + (dR[:, self.owner] @ self.arms[:, :, None])[..., 0]
-        return np.asarray(np.sqrt(np.max(np.sum(d * d, axis=2), axis=1)))
+        return np.asarray(np.sqrt(self.squares(b["r"] - a["r"], b["R"] - a["R"]).max(axis=1)))
+
+    def squares(self, dr: Array, dR: Array) -> Array:
+        """Squares of how far each point is apart, (..., m) [m²].
+
+        dr (..., b, 3), dR (..., b, 3, 3): by how much the joint points and attitudes of two sets of bodies differ.
+        """
+        d = dr[..., self.owner, :] + (dR[..., self.owner, :, :] @ self.arms[:, :, None])[..., 0]
+        each = d * d
+        return np.asarray(each[..., 0] + each[..., 1] + each[..., 2])

@@ -50,15 +50,14 @@ def require_finite_blocks(blocks: Mapping[str, Any], times: Array, known: Mask) 
 
 
 def all_finite(node: Any) -> bool:
-    """Whether all arrays and numbers below a node of the results are finite: mostly so."""
-    kind = type(node)
-    if kind is dict:
-        return all(map(all_finite, node.values()))
-    if kind is float:
-        return math.isfinite(node)
-    if kind is np.ndarray:
+    """Whether all numbers below a node of the results are finite, as they are where nothing is open."""
+    if isinstance(node, np.ndarray):
         return node.dtype.kind != "f" or bool(np.isfinite(node).all())
-    return next(leaves(node, (), {}), None) is None
+    if isinstance(node, float):
+        return math.isfinite(node)
+    if isinstance(node, list | tuple):
+        return all(map(all_finite, node))
+    return not isinstance(node, Mapping) or all(map(all_finite, node.values()))
 
 
 def leaves(node: Any, keys: tuple[str, ...], block: Mapping[str, Any]) -> NumericLeaves:

@@ -100,7 +100,8 @@ class Best(NamedTuple):
         """Better ones among more heights, in place."""
         known = np.where(np.isnan(height), -np.inf, height)
         order = np.lexsort((known, target))
-        last = order[np.append(np.flatnonzero(np.diff(target[order])), len(order) - 1)] if len(order) else order
+        ascending = target[order]
+        last = order[np.append(ascending[1:] != ascending[:-1], np.ones(min(len(order), 1), dtype=bool))]
         better = last[known[last] > np.where(np.isnan(self.height), -np.inf, self.height)[target[last]]]
         own = target[better]
         self.height[own], self.at[own], self.column[own] = height[better], at[better], column[better]
@@ -168,13 +169,15 @@ def intervals_of(
     times: Array, values: Array, asked: Targets, found: Best, sides: tuple[float, ...] = BOTH
 ) -> Intervals:
     """The intervals of the grid that promise more than the best on it, on these sides."""
-    step = np.diff(times)
+    step = times[1:] - times[:-1]
     smooth = ~sides_of_jumps(times)
     heights = values[:, asked.column]
     varies = _varies(heights)
     heights, owner, column = heights[:, varies], asked.owner[varies], asked.column[varies]
-    left, right = completed(*_bends(times, heights, step, smooth))
-    up, down = _rises(heights, step, smooth)
+    slope = (heights[1:] - heights[:-1]) / step[:, None]
+    slope[~smooth] = np.nan
+    left, right = completed(*_bends(times, slope, step, smooth))
+    up, down = _rises(slope, step)
     most = np.maximum(np.abs(left), np.abs(right))
     doubt = FOURTH * most
     inner = np.concatenate([[False], smooth, [False]])
@@ -202,16 +205,14 @@ def intervals_of(
     return joined(parts)
 
 
-def _bends(times: Array, heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
-    """κ of the parabolas with the neighbour before and with that after each interval, (n_t - 1, m).
+def _bends(times: Array, slope: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
+    """κ of the parabolas with the neighbour before and with that after each interval, (n_t - 1, m); slope: so, too.
 
     At the end of a smooth stretch the second differences are continued as they run.
     """
-    slope = np.diff(heights, axis=0) / step[:, None]
-    slope[~smooth] = np.nan
-    second = np.full((len(times) + 2, heights.shape[1]), np.nan)  # [k + 1]: about the instant k
+    second = np.full((len(times) + 2, slope.shape[1]), np.nan)  # [k + 1]: about the instant k
     if len(times) > 2:
-        second[2:-2] = np.diff(slope, axis=0) / (times[2:] - times[:-2])[:, None]
+        second[2:-2] = (slope[1:] - slope[:-1]) / (times[2:] - times[:-2])[:, None]
     begins = np.append(True, ~smooth)  # whether a stretch begins at an instant, or ends
     ends = np.append(~smooth, True)
     for edge, inward in ((begins, 1), (ends, -1)):
@@ -222,11 +223,11 @@ def _bends(times: Array, heights: Array, step: Array, smooth: Mask) -> tuple[Arr
     return square * second[1:-2], square * second[2:-1]
 
 
-def _rises(heights: Array, step: Array, smooth: Mask) -> tuple[Array, Array]:
+def _rises(slope: Array, step: Array) -> tuple[Array, Array]:
     """How much a quantity goes on changing into each interval as it did before it, and backwards as after it."""
-    slope = np.full((len(step) + 2, heights.shape[1]), np.nan)
-    slope[1:-1] = np.where(smooth[:, None], np.diff(heights, axis=0) / step[:, None], np.nan)
-    return slope[:-2] * step[:, None], -slope[2:] * step[:, None]
+    up, down = np.full(slope.shape, np.nan), np.full(slope.shape, np.nan)
+    up[1:], down[:-1] = slope[:-1] * step[1:, None], -slope[1:] * step[:-1, None]
+    return up, down
 
 
 def refined(sample: ColumnsAt, pool: Intervals, asked: Targets, found: Best, first: AtFirst) -> bool:
@@ -277,8 +278,10 @@ def together(at: Array, width: Array) -> Array:
 
 def _first(worth: Array, target: Indices, most: int) -> Mask:
     """Which are among the so many worthiest of their target."""
+    if len(target) <= most:
+        return np.ones(len(target), dtype=bool)
     order = np.lexsort((-worth, target))
-    starts = np.append(True, np.diff(target[order]) > 0)
+    starts = np.append(True, target[order[1:]] > target[order[:-1]])
     rank = np.arange(len(order)) - np.maximum.accumulate(np.where(starts, np.arange(len(order)), 0))
     chosen = np.empty(len(order), dtype=bool)
     chosen[order] = rank < most
@@ -301,7 +304,7 @@ def _varies(values: Array) -> Mask:
 
 def sides_of_jumps(times: Array) -> Mask:
     """Which neighbouring instants are the two sides of a jump: no farther apart than rounding, (n_t - 1,)."""
-    return np.asarray(np.diff(times) <= 8.0 * tolerances.EPS * np.abs(times[1:]))
+    return np.asarray(times[1:] - times[:-1] <= 8.0 * tolerances.EPS * np.abs(times[1:]))
 
 
 def filled(times: Array) -> Array:
