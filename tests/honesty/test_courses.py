@@ -117,12 +117,12 @@ def is_monotone(f: Function) -> bool:
 def test_one_crossing_of_a_smooth_rise_takes_few_runs() -> None:
     """Half of them no more than 10, nine of ten no more than 12: the aim, over all such functions drawn here."""
     runs = []
-    for seed in range(150):
+    for seed in range(100):
         rng = np.random.default_rng([7, seed])
         f = (polynomial, wave, exponential, two_waves)[seed % 4](rng)
         if is_monotone(f) and len(crossings_of(f)) == 1:
             runs.append(len(looked(f, 10.0 ** rng.uniform(-12.0, -8.0), seed).samples))
-    assert len(runs) > 40
+    assert len(runs) > 25
     assert np.median(runs) <= 10 and np.quantile(runs, 0.9) <= 12, sorted(runs)
 
 
