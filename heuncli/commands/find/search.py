@@ -128,13 +128,14 @@ def beyond(course: MeasureCourse, one: Sample, other: Sample) -> float:
 def is_steep(course: MeasureCourse, one: Sample, other: Sample) -> bool:
     """Whether the course outside is so steep that it goes from one side to the other in the narrowest bracket.
 
-    Towards a jump it is level, towards a pole it grows.
+    Towards a jump it is level, towards a pole it grows. Across the bracket counts what is beyond the errors of both.
     """
     i = next(i for i, sample, _ in course.pairs() if sample is one)
     outside = [(one, each) for each in course.beside(i, -1)[:1]] + [(other, each) for each in course.beside(i, 1)[:1]]
-    through = abs((other.gap or 0.0) - (one.gap or 0.0)) / (other.x - one.x)
+    errors = 2.0 * (one.error + other.error)
+    through = max(abs((other.gap or 0.0) - (one.gap or 0.0)) - errors, 0.0) / (other.x - one.x)
     slopes = [((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (other.side or 0) for near, far in outside]
-    return bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes)
+    return through == 0.0 or (bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes))
 
 
 def root(course: MeasureCourse, one: Sample, other: Sample) -> float:
