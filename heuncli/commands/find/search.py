@@ -28,10 +28,7 @@ def search(course: MeasureCourse) -> None:
     course.scan()
     given_up: set[tuple[float, float]] = set()
     while True:
-        i = next(crossed(course), None)
-        if i is not None:
-            close_in(course, i)
-            continue
+        close_all(course)
         i = widest(course, given_up)
         if i is None:
             break
@@ -41,6 +38,12 @@ def search(course: MeasureCourse) -> None:
             course.at(0.5 * (one.x + other.x))
         else:
             course.look(place_between(one, other, course.between(i)))
+
+
+def close_all(course: MeasureCourse) -> None:
+    """Close in on all crossings and jumps that neighbours on different sides tell of. Raises SpentError."""
+    while (i := next(crossed(course), None)) is not None:
+        close_in(course, i)
 
 
 def crossed(course: MeasureCourse) -> Iterator[int]:
