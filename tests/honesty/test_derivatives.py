@@ -127,6 +127,24 @@ def test_a_bound_leaves_one_side() -> None:
     assert abs(one.value + 0.5 / math.sqrt(0.5)) <= one.error < 1e-3
 
 
+@pytest.mark.parametrize("seed", range(120))
+def test_a_bend_beside_a_bound_is_covered_as_far_as_it_shows(seed: int) -> None:
+    """At the number itself it is told from the noise if the measure changes by 40 errors more there."""
+    rng = np.random.default_rng([31, seed])
+    (far, left, right), error = beside(rng), 10.0 ** rng.uniform(-15.0, -3.5)
+    far, way = abs(far), rng.choice([-1.0, 1.0])
+
+    def f(x: float) -> float:
+        if way * (x - 1.0) < 0.0:
+            return math.sqrt(-1.0)
+        return (left if way * (x - 1.0) < far else right) * (way * (x - 1.0) - far)
+
+    one = told(f, 1.0, error, seed)
+    if one.value is not None and (far == 0.0 or abs(left - right) * far > 40.0 * error):
+        assert one.kind == "one-sided"
+        assert abs(one.value - way * (left if far > 0.0 else right)) <= one.error
+
+
 def test_the_same_bits_are_nothing() -> None:
     one = derivative(lambda x: NoisyValue(3.25, 1e-9), 1.0, 1.0)
     assert (one.kind, one.value, one.error) == ("nothing", 0.0, 0.0)

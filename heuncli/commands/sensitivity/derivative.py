@@ -173,14 +173,32 @@ def closer(about: Differences, first: StepPair, size: float) -> list[StepPair]:
 
 
 def one_sided(about: Differences, h: float, way: int, size: float) -> NoisyDerivative:
-    """By differences on the side that is solved."""
-    best = best_pair(
-        lambda x: about.side(x, way), lambda x: about.solved(*(0.25 * x * way * k for k in (1, 2, 4))), h, size
-    )
-    why = about.ask(-way * h).why
+    """By differences on the side that is solved, at smaller steps where these tell of another derivative.
+
+    From one side a bend at c does not show at steps of many c: they tell of what is beyond. So smaller ones are asked
+    until they drown in noise; what these differ by, as far as they are known as well, is part of the error.
+    """
+
+    def solved(x: float) -> bool:
+        return about.solved(*(0.25 * x * way * k for k in (1, 2, 4)))
+
+    best = best_pair(lambda x: about.side(x, way), solved, h, size)
+    most, apart, h = abs(best.value), 0.0, 0.25 * best.step
+    while h >= LEAST * size and solved(h):
+        found = about.side(h, way)
+        most = max(most, abs(found.value))
+        if found.noise > most:
+            break
+        differ = abs(found.value - best.value)
+        if differ > found.error + best.error or found.error < best.error:
+            best, apart = found, 0.0
+        elif found.error <= UNEQUAL * best.error:
+            apart = max(apart, differ)
+        h *= 0.25
+    why = about.ask(-way * best.step).why
     if best.difference > CLEAR * best.noise and best.difference > DOUBT * abs(best.value):
         return NoisyDerivative(None, kind="refused", why=why, step=best.step)
-    return NoisyDerivative(best.value, best.error, "one-sided", why, step=best.step)
+    return NoisyDerivative(best.value, best.error + apart, "one-sided", why, step=best.step)
 
 
 def best_pair(pair: Callable[[float], StepPair], solved: Callable[[float], bool], h: float, size: float) -> StepPair:
