@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 
@@ -17,6 +17,33 @@ from heuncli.nearest import did_you_mean
 from heuncli.results import Array, Results
 from heuncli.spec.methods import unfit_tolerance
 from heuncli.spec.models import Spec
+from heuncli.study.model.options import Options
+
+
+class SolverRequest(Protocol):
+    """A request with the options by which scenes are solved."""
+
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def method(self) -> str | None: ...
+    @property
+    def step(self) -> float | None: ...
+    @property
+    def least_norm(self) -> bool: ...
+    @property
+    def no_reduce(self) -> bool: ...
+
+
+def solver_options(request: SolverRequest) -> Options:
+    """By what a scene is solved. Raises UsageError."""
+    return Options(
+        tolerance=tolerance(request.tolerance),
+        method=request.method,
+        step=positive("--step", request.step),
+        least_norm=request.least_norm,
+        reduce=not request.no_reduce,
+    )
 
 
 def choice(option: str, value: str, known: Sequence[str]) -> str:

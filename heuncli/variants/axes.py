@@ -26,7 +26,7 @@ from heuncli.spec.quantity import FIGURE
 Law = Literal["normal", "uniform", "lhs", "sobol"]
 MOST_VALUES = 10_000_000  # of one axis, which are kept as numbers
 
-QUANTITY = re.compile(rf"{FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")
+QUANTITY = re.compile(rf"(?!\s*0[xo]){FIGURE}((?:[^\W\d_]|°|1/).*)?\Z")  # the x of 0x32 is no unit
 EVENLY = re.compile(r"([^/].*:.*?)/\s*(\d+)\s*(log\b)?(.*)\Z", re.DOTALL)  # the first /count: units have a / too
 DRAWN = re.compile(rf"\s*({'|'.join(get_args(Law))})\s*\((.*)\)([^(),]*)\Z", re.DOTALL)
 FORMS = "NAME=a:b/count, NAME=a:b/count log, NAME=v1,v2,..., or NAME=normal(mean,deviation), uniform(a,b), lhs, sobol"

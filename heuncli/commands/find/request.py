@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, UNITS, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv")
@@ -30,9 +30,7 @@ class FindRequest(NamedTuple):
     evaluations: Annotated[
         int | None, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")
     ] = None
-    tolerance: Annotated[
-        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
-    ] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
     format: Annotated[
         str | None,
         Option(

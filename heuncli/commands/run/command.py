@@ -10,7 +10,7 @@ from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
-from heuncli.cli.solving import choice, overrides, positive, tolerance
+from heuncli.cli.solving import choice, overrides, solver_options
 from heuncli.cli.target import format_of
 from heuncli.cli.units import TABLES, say_what_stays, units
 from heuncli.commands.run.request import FORMATS, RunRequest
@@ -25,7 +25,6 @@ from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
 from heuncli.study.model.memory_estimate import Room
-from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entries_of, entry_at
 from heuncli.telling.selection import told_by_default
 
@@ -50,14 +49,8 @@ def main(request: RunRequest) -> int:
         asked = measure.parse_all(request.measure)
     only = _only(request.only) if request.only is not None else None
     shown = units(request.units)
-    options = Options(
-        tolerance=tolerance(request.tolerance),
-        method=request.method,
-        step=positive("--step", request.step),
-        least_norm=request.least_norm,
-        reduce=not request.no_reduce,
-        axes="world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES),
-    )
+    axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
+    options = replace(solver_options(request), axes=axes)
     begun = time.perf_counter()
     given = overrides(request.set)
     if request.case == ALL_CASES:

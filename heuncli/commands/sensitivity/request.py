@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, TIME_LIMIT, UNITS, Option
+from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv")
@@ -35,9 +35,7 @@ class SensitivityRequest(NamedTuple):
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
-    tolerance: Annotated[
-        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
-    ] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
     format: Annotated[
         str | None,
         Option(

@@ -8,7 +8,7 @@ from heuncli.cli import jobs, measure, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
-from heuncli.cli.solving import overrides, positive, spec_among, tolerance
+from heuncli.cli.solving import overrides, solver_options, spec_among
 from heuncli.cli.target import format_of, require_room
 from heuncli.cli.units import units
 from heuncli.commands.sweep.checks import problems_of, warnings_of
@@ -23,10 +23,10 @@ from heuncli.commands.sweep.store import Store
 from heuncli.commands.sweep.table import axes_in
 from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
 from heuncli.errors import Problem, SpecError
+from heuncli.records import replace
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
 from heuncli.study.model.memory_estimate import Room
-from heuncli.study.model.options import Options
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys
@@ -81,15 +81,8 @@ def recipe_of(request: SweepRequest, path: str) -> Recipe:
         hint = "leave --jobs out: on a cluster as many work as there are workers"
         raise UsageError(Problem("bad-option", "--jobs and --dask do not go together", hint=hint))
     room, each = memory.room("table")
-    options = Options(
-        tolerance=tolerance(request.tolerance),
-        method=request.method,
-        step=positive("--step", request.step),
-        least_norm=request.least_norm,
-        reduce=not request.no_reduce,
-        time_limit=request.time_limit_each,
-        room=Room(room / jobs.most(request.jobs), each) if request.dask is None else None,
-    )
+    own = Room(room / jobs.most(request.jobs), each) if request.dask is None else None
+    options = replace(solver_options(request), time_limit=request.time_limit_each, room=own)
     measures = tuple(measure.parse_all(request.measure))
     return Recipe(path, text_in(path), measures, options, overrides(request.set))
 

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import NO_REDUCE, OUTPUT, QUIET, SET, UNITS, Option
+from heuncli.cli.options import LEAST_NORM, METHOD, NO_REDUCE, OUTPUT, QUIET, SET, STEP, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json", "csv", "parquet")
@@ -68,15 +68,11 @@ class SweepRequest(NamedTuple):
     ] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
-    method: Annotated[
-        str | None, Option(("--method",), "The method of integration; `heun methods` lists them.", "NAME")
-    ] = None
-    step: Annotated[float | None, Option(("--step",), "The step of a method of fixed step.", "SECONDS")] = None
-    tolerance: Annotated[
-        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
-    ] = None
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
-    least_norm: Annotated[bool, Option(("--least-norm",), "Split what redundant supports leave open.")] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
     dask: Annotated[
         str | None,
         Option(

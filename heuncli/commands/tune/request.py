@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, UNITS, Option
+from heuncli.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
 
 FORMATS = ("table", "json")
@@ -62,9 +62,7 @@ class TuneRequest(NamedTuple):
     ] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
-    tolerance: Annotated[
-        float | None, Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
-    ] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
     units: Annotated[str | None, UNITS] = None
     jobs: Annotated[
