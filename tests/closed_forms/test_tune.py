@@ -102,7 +102,16 @@ def test_half_of_what_goes_to_and_fro(heun: Heun, folder: Path) -> None:
 def test_a_four_bar_balanced_in_force(heun: Heun) -> None:
     """Berkof and Lowen's weights are found from others: 8 and 20 kg mm, and no force is left."""
     spec = str(ROOT / "specs" / "four_bar_balanced.yaml")
-    words = ["U1=2:15kg*mm", "U3=3:44kg*mm", "--set", "U1=3 kg*mm", "--set", "U3=40 kg*mm", "--set", "analysis.samples=13"]
+    words = [
+        "U1=2:15kg*mm",
+        "U3=3:44kg*mm",
+        "--set",
+        "U1=3 kg*mm",
+        "--set",
+        "U3=40 kg*mm",
+        "--set",
+        "analysis.samples=13",
+    ]
     found = tuned(heun, spec, *words, "--minimise", "max foundation.force", "--evaluations", "500")
     assert found["converged"]
     assert [one["value"] for one in found["variables"]] == pytest.approx([8.0, 20.0], abs=2e-5)

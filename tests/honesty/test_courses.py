@@ -14,8 +14,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.commands.find.course import Sample
+from heuncli.commands.find.course import MeasureCourse, Sample
 from heuncli.commands.find.results import CourseFindings
+from heuncli.commands.find.search import is_steep
 from heuncli.commands.find.study import look
 from heuncli.variants.conditions import Sign
 
@@ -158,6 +159,48 @@ def test_a_flat_crossing_says_so_and_its_error_holds() -> None:
     """(x - 0.4)^3 is not told from 0 over a thousandth of the interval."""
     (crossing,) = looked(lambda x: (x - 0.4) ** 3, 1e-9).crossings
     assert crossing.flat and abs(crossing.sample.x - 0.4) <= crossing.error < 3e-3
+
+
+def scattered(f: Function, size: float, rng: np.random.Generator) -> Callable[[float], Sample]:
+    """The function within noise of that size, drawn anew at each place."""
+    return lambda x: Sample(x, f(x) + size * rng.uniform(-1.0, 1.0), size)
+
+
+BENT: dict[str, Callable[[float], float]] = {  # all cross at 0, where their slopes are other than beside it
+    "bends": lambda u: u * (3.0 if u > 0.0 else 0.1),
+    "bends a little": lambda u: u * (3.0 if u > 0.0 else 1.6),
+    "cube": lambda u: u**3,
+    "fifth power": lambda u: u**5,
+    "flat on one side": lambda u: u**3 if u > 0.0 else u,
+    "flat and curved": lambda u: u**3 + u**4,
+}
+
+
+@pytest.mark.parametrize("seed", range(15))
+@pytest.mark.parametrize("shape", BENT)
+def test_crossings_where_the_course_bends_or_is_flat_are_within_their_errors(shape: str, seed: int) -> None:
+    rng = np.random.default_rng([13, seed])
+    c, way = rng.uniform(0.03, 0.97), rng.choice([-1.0, 1.0])
+    size = 10.0 ** rng.uniform(-11.0, -3.5)
+    found = look(scattered(lambda x: way * BENT[shape](x - c), size, rng), 0.0, 1.0, "=", count=7, most=400)
+    assert found.complete and found.crossings and not found.jumps
+    for crossing in found.crossings:
+        assert abs(crossing.sample.x - c) <= crossing.error + 1e-15
+    if shape.startswith("bends"):
+        assert not crossing.flat and crossing.error <= 20.0 * size / 0.1 + 1e-9  # and they are of use
+
+
+@pytest.mark.parametrize("noise", [1e-11, 1e-6])
+def test_a_rise_within_its_noise_is_no_jump(noise: float) -> None:
+    """Beside the narrowest bracket noise alone makes the course fall; across it no more is left than both errors."""
+    course = MeasureCourse(lambda x: Sample(x, 0.0, noise), 0.0, 1.0, 7, 10)
+    places = (0.2, 0.5 - 3.0 * course.finest, 0.5, 0.5 + course.finest, 0.5 + 3.0 * course.finest, 0.8)
+    gaps = (-0.3, -1.3 * noise, -1.1 * noise, 1.1 * noise, 1.05 * noise, 0.3)
+    course.samples = [Sample(x, gap, noise) for x, gap in zip(places, gaps, strict=True)]
+    assert is_steep(course, course.samples[2], course.samples[3])
+    jump = [Sample(each.x, gap, noise) for each, gap in zip(course.samples, (-1, -1, -1, 1, 1, 1), strict=True)]
+    course.samples = jump
+    assert not is_steep(course, jump[2], jump[3])
 
 
 @pytest.mark.parametrize("f", [lambda x: (x - 0.4) ** 2, lambda x: -abs(x - 0.4), lambda x: (x - 0.4) ** 4])

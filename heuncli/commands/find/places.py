@@ -2,8 +2,10 @@
 
     |x - x0| <= E / |g'|            E: the error of the measure and what is left of g at the place [that of g]
 
-with the slope g' from the neighbours that are well told from the value, less what it may be off by; never further than
-the next neighbours that lie on one side for certain.
+with the slope g' from the neighbours that are well told from the value, less what it may be off by, and no more than
+the chords to them; never further than the next neighbours that lie on one side for certain. Where the course bends at
+the value, or its slope falls towards it as at an inflection, slopes of the neighbours tell nothing of the place itself:
+the crossing is then enclosed, and the place is as far off as its enclosure reaches.
 """
 
 from __future__ import annotations
@@ -14,9 +16,35 @@ from itertools import groupby
 
 from heuncli.commands.find.course import APART, MeasureCourse, Sample, slope
 from heuncli.commands.find.results import CourseJump, Crossing, Met, MetEdge, Touch, UnsolvedStretch
+from heuncli.named_tuples import NamedTuple
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
 SURE = 0.5  # of a slope: what it may be off by
+BENT = 0.5  # of the steeper chord: where the other is less, the course bends
+SAGS = 1.5  # power of the distance with which g grows on all sides: more than that is flat at the place
+ENCLOSE = 2.0  # times E / chord: where a crossing is enclosed
+ENCLOSED = 4.0  # times E / chord: an enclosure that is not flat
+
+
+class KnownSlope(NamedTuple):
+    """What is known of a course at a sample: the least that |g'| may be, and |g''|/2.
+
+    chord: the least slope of the chords to the neighbours; sure: whether the slopes beside the sample hold up to it.
+    """
+
+    least: float
+    bend: float
+    chord: float
+    sure: bool
+
+    def tells(self, size: float) -> bool:
+        """Whether it tells the place well, of an error of that size."""
+        return self.sure and self.least > 0.0 and self.least**2 > 4.0 * self.bend * size / SURE
+
+    def reach(self, size: float) -> float | None:
+        """How far the place may be from the sample; None: the slope is too small to tell."""
+        under = self.least * self.least - 4.0 * self.bend * size
+        return 2.0 * size / (self.least + math.sqrt(under)) if self.least > 0.0 and under > 0.0 else None
 
 
 class SideGroup(list[Sample]):
@@ -62,23 +90,30 @@ def met_by(course: MeasureCourse, group: SideGroup, before: int | None, after: i
 
 def reach(course: MeasureCourse, group: SideGroup, best: Sample) -> tuple[float, bool]:
     """How far the true place may be from a sample, and whether the slope there is too small to tell."""
-    size = max(sample.error for sample in group) + _size(best)
-    outer = [neighbours(course, group, way, 0.0)[:1] for way in (-1, 1)]
-    limit = max(
-        abs((side[0] if side else end).x - best.x) for side, end in zip(outer, (group[0], group[-1]), strict=True)
-    )
+    size = size_at(group, best)
+    limit = max(abs((outer or end).x - best.x) for _, end, outer in enclosure(course, group))
     found = slope_at(course, group, best, size)
     if found is None:
         return limit, True
-    steep, bend = found
-    under = steep * steep - 4.0 * bend * size
-    if steep <= 0.0 or under <= 0.0:
-        return limit, True
-    return min(limit, 2.0 * size / (steep + math.sqrt(under))), False
+    if found.sure:
+        told = found.reach(size)
+        return (limit, True) if told is None else (min(limit, told), False)
+    return limit, limit * found.chord > ENCLOSED * size
 
 
-def slope_at(course: MeasureCourse, group: SideGroup, best: Sample, size: float) -> tuple[float, float] | None:
-    """The least that |g'| may be at a sample, and |g''|/2; None where too little is known."""
+def size_at(group: SideGroup, best: Sample) -> float:
+    """E: the error of the measure, and what is left of it."""
+    return max(sample.error for sample in group) + _size(best)
+
+
+def enclosure(course: MeasureCourse, group: SideGroup) -> Iterator[tuple[int, Sample, Sample | None]]:
+    """Both ways the end of a group, and the next sample that lies on a side for certain, if there is one."""
+    for way, end in ((-1, group[0]), (1, group[-1])):
+        yield way, end, next(iter(neighbours(course, group, way, 0.0)), None)
+
+
+def slope_at(course: MeasureCourse, group: SideGroup, best: Sample, size: float) -> KnownSlope | None:
+    """What is known of the slope at a sample; None where that is too little."""
     left, right = (neighbours(course, group, way, CLEAR * size) for way in (-1, 1))
     whole = [*reversed(left), best, *right]
     if len(whole) < 3:
@@ -91,7 +126,19 @@ def slope_at(course: MeasureCourse, group: SideGroup, best: Sample, size: float)
     doubt = noise + max((abs(each - slopes[0]) for each in slopes[1:]), default=0.0)
     a, b, c = sorted(near)
     bend = ((_gap(c) - _gap(b)) / (c.x - b.x) - (_gap(b) - _gap(a)) / (b.x - a.x)) / (c.x - a.x)
-    return abs(slopes[0]) - doubt, abs(bend)
+    chords = [abs((_gap(side[0]) - _gap(best)) / (side[0].x - best.x)) for side in (left, right) if side]
+    sure = bool(wider) and min(chords) >= BENT * max(*chords, abs(slopes[0])) and not sags(best, left, right)
+    chord = min(chords) - noise
+    return KnownSlope(min(abs(slopes[0]) - doubt, chord), abs(bend), chord, sure)
+
+
+def sags(best: Sample, *sides: list[Sample]) -> bool:
+    """Whether g grows on all sides faster than the distance: its slope falls towards the place."""
+    powers = [
+        math.log(_size(far) / _size(near)) / math.log((far.x - best.x) / (near.x - best.x))
+        for near, far in (side for side in sides if len(side) == 2)
+    ]
+    return min(powers, default=0.0) > SAGS
 
 
 def neighbours(course: MeasureCourse, group: SideGroup, way: int, clear: float) -> list[Sample]:
@@ -108,21 +155,25 @@ def neighbours(course: MeasureCourse, group: SideGroup, way: int, clear: float) 
     return found
 
 
-def doubtful(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
-    """Crossings whose slope is not well known, with a neighbour on another side, to be asked between."""
-    found_groups = groups(course)
-    for k, group in enumerate(found_groups):
-        around = {found_groups[j].side for j in (k - 1, k + 1) if 0 <= j < len(found_groups)}
-        if group.side != 0 or len(around) < 2:
+def doubtful(course: MeasureCourse) -> Iterator[float]:
+    """Where to ask beside crossings whose slope is not well known: by these a crossing is enclosed."""
+    found = groups(course)
+    for k, group in enumerate(found):
+        before, after = (found[i].side if 0 <= i < len(found) else None for i in (k - 1, k + 1))
+        if group.side != 0 or before == after or not (before or after):
             continue
         best = min(group, key=_size)
-        size = max(sample.error for sample in group) + _size(best)
-        found = slope_at(course, group, best, size)
-        if found is not None and found[0] > 0.0 and found[0] ** 2 > 4.0 * found[1] * size / SURE:
+        size = size_at(group, best)
+        known = slope_at(course, group, best, size)
+        if known is not None and known.tells(size):
             continue
-        for way, end in ((-1, group[0]), (1, group[-1])):
-            for outer in neighbours(course, group, way, 0.0)[:1]:
-                yield end, outer
+        near = ENCLOSE * size / known.chord if known is not None and known.chord > 0.0 else math.inf
+        for way, end, outer in enclosure(course, group):
+            if outer is None or abs(outer.x - best.x) * ENCLOSE <= near * ENCLOSED:
+                continue
+            half = 0.5 * (end.x + outer.x)
+            there = best.x + way * near
+            yield there if way * end.x < way * there < way * half else half
 
 
 def unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:

@@ -28,10 +28,7 @@ def search(course: MeasureCourse) -> None:
     course.scan()
     given_up: set[tuple[float, float]] = set()
     while True:
-        i = next(crossed(course), None)
-        if i is not None:
-            close_in(course, i)
-            continue
+        close_all(course)
         i = widest(course, given_up)
         if i is None:
             break
@@ -41,6 +38,12 @@ def search(course: MeasureCourse) -> None:
             course.at(0.5 * (one.x + other.x))
         else:
             course.look(place_between(one, other, course.between(i)))
+
+
+def close_all(course: MeasureCourse) -> None:
+    """Close in on all crossings and jumps that neighbours on different sides tell of. Raises SpentError."""
+    while (i := next(crossed(course), None)) is not None:
+        close_in(course, i)
 
 
 def crossed(course: MeasureCourse) -> Iterator[int]:
@@ -128,13 +131,14 @@ def beyond(course: MeasureCourse, one: Sample, other: Sample) -> float:
 def is_steep(course: MeasureCourse, one: Sample, other: Sample) -> bool:
     """Whether the course outside is so steep that it goes from one side to the other in the narrowest bracket.
 
-    Towards a jump it is level, towards a pole it grows.
+    Towards a jump it is level, towards a pole it grows. Across the bracket counts what is beyond the errors of both.
     """
     i = next(i for i, sample, _ in course.pairs() if sample is one)
     outside = [(one, each) for each in course.beside(i, -1)[:1]] + [(other, each) for each in course.beside(i, 1)[:1]]
-    through = abs((other.gap or 0.0) - (one.gap or 0.0)) / (other.x - one.x)
+    errors = 2.0 * (one.error + other.error)
+    through = max(abs((other.gap or 0.0) - (one.gap or 0.0)) - errors, 0.0) / (other.x - one.x)
     slopes = [((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (other.side or 0) for near, far in outside]
-    return bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes)
+    return through == 0.0 or (bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes))
 
 
 def root(course: MeasureCourse, one: Sample, other: Sample) -> float:

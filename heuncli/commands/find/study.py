@@ -7,7 +7,7 @@ from collections.abc import Callable
 from heuncli.commands.find.course import MeasureCourse, Sample, SpentError
 from heuncli.commands.find.places import doubtful, meetings, met, unsolved
 from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, Touch
-from heuncli.commands.find.search import refine_extreme, search
+from heuncli.commands.find.search import close_all, refine_extreme, search
 from heuncli.variants.conditions import Sign
 
 HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
@@ -25,8 +25,9 @@ def look(
     try:
         search(course)
         for _ in range(HALVINGS):
-            for one, other in list(doubtful(course)):
-                course.at(0.5 * (one.x + other.x))
+            for place in list(doubtful(course)):
+                course.at(place)
+            close_all(course)  # a group that was one may have come apart
         if not any(meetings(course)) and any(sample.gap is not None for sample in course.samples):
             for way in (-1, 1):
                 refine_extreme(course, way)

@@ -28,7 +28,7 @@ from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
 ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
-USUAL = 8  # variants for each number, mostly
+USUAL = 10  # variants for each number, mostly
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
 

@@ -103,7 +103,8 @@ def _rows(
     lead = (number.name, with_digits(number.value, 0.0), number.unit)
     per = f"{unit if unit not in ('', '1') else '1'}/{_denominator(number.unit)}"
     if slope.left is not None and slope.right is not None:
-        for (value, error), side in ((slope.left, "on the left"), (slope.right, "on the right: it bends at the value")):
+        bends = f"on the right: it bends within {rough(slope.step)} of the value"
+        for (value, error), side in ((slope.left, "on the left"), (slope.right, bends)):
             yield (*lead, with_digits(value * size, error * size), rough(error * size), per, "", side)
         return
     if slope.value is None:

@@ -21,7 +21,8 @@ class NoisyDerivative(NamedTuple):
     """dm/dp within an error, in units of m and p.
 
     kind: "nothing" hangs on it, it is known from one side alone, it bends there (left and right of it, each with its
-    error), or it is refused, and why: a code and a sentence. step: half the distance of the variants it is from.
+    error), or it is refused, and why: a code and a sentence. step: half the distance of the variants it is from; where
+    it bends, how far from the number that may be.
     """
 
     value: float | None
