@@ -10,9 +10,9 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli import measure
-from heuncli.commands.sweep import cluster_worker
-from heuncli.commands.sweep.cluster_lots import DEPTH, FIRST, GROWTH, MOST, SECONDS, WORKERS, Lot, Lots, Pace
-from heuncli.commands.sweep.cluster_worker import HELLO, HeldRecipe, Variant, answered, described
+from heuncli.commands.sweep.cluster import worker as cluster_worker
+from heuncli.commands.sweep.cluster.lots import DEPTH, FIRST, GROWTH, MOST, SECONDS, WORKERS, Lot, Lots, Pace
+from heuncli.commands.sweep.cluster.worker import HELLO, HeldRecipe, Variant, answered, described
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.version import VERSION

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.sweep.store import Store
+from heuncli.commands.sweep.store.store import Store
 from heuncli.errors import OutputError
 from heuncli.variants.asking import Answer, Asker, Measured
 from tests.shared.command import HANGING, Done, Heun

@@ -103,7 +103,7 @@ def test_a_sweep_does_without_what_clusters_need() -> None:
     words = ("sweep", "-", "bodies.bar.angular_velocity.2=1,2", "--measure", "final energy.kinetic")
     found = loaded(*words, text=BAR)
     assert "heuncli.commands.sweep.running" in found
-    clusters = {"distributed", "dask", "tornado", "heuncli.commands.sweep.cluster", "heuncli.variants.files"}
+    clusters = {"distributed", "dask", "tornado", "heuncli.commands.sweep.cluster.flow", "heuncli.variants.files"}
     assert not found & (clusters | {"scipy", "rich", "pydantic"})
 
 

@@ -19,9 +19,9 @@ from heuncli.commands.sweep.rows import SweepHead, SweptMeasure
 from heuncli.commands.sweep.running import Sweep, run
 from heuncli.commands.sweep.shards import shard_of
 from heuncli.commands.sweep.showing import show
-from heuncli.commands.sweep.store import Store
+from heuncli.commands.sweep.store.store import Store
 from heuncli.commands.sweep.table import axes_in
-from heuncli.commands.sweep.told import ENDINGS, Telling, require_tellable
+from heuncli.commands.sweep.telling.told import ENDINGS, Telling, require_tellable
 from heuncli.errors import Problem, SpecError
 from heuncli.records import replace
 from heuncli.spec.names import ALL_CASES

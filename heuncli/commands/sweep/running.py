@@ -16,12 +16,12 @@ from heuncli.cli.leaving import Stopping
 from heuncli.cli.output import say
 from heuncli.cli.progress import Tell, progress
 from heuncli.cli.units import say_what_stays
-from heuncli.commands.sweep.kept_heads import texts_of_head
-from heuncli.commands.sweep.noticed import Noticed, noticed_in, say_noticed
 from heuncli.commands.sweep.request import SweepRequest
 from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.store import Store, StoredRows
-from heuncli.commands.sweep.told import Telling, tell
+from heuncli.commands.sweep.store.heads import texts_of_head
+from heuncli.commands.sweep.store.store import Store, StoredRows
+from heuncli.commands.sweep.telling.noticed import Noticed, noticed_in, say_noticed
+from heuncli.commands.sweep.telling.told import Telling, tell
 from heuncli.commands.sweep.workers import answers_of
 from heuncli.errors import OutputError, SpecError
 from heuncli.named_tuples import NamedTuple
@@ -128,13 +128,13 @@ def _answers(
     if request.dask is None:
         yield from answers_of(sweep.asker, plan, numbers, jobs.how_many(request.jobs, sweep.size), stopped)
         return
-    from heuncli.commands.sweep import cluster  # what is heavy, and not everybody has
+    from heuncli.commands.sweep.cluster import flow  # what is heavy, and not everybody has
 
     def told(line: str) -> None:
         if not request.quiet:
             say(f"heun: {line}")
 
-    yield from cluster.answers_of(sweep.asker.recipe, plan, numbers, request.dask, sweep.size, told, stopped)
+    yield from flow.answers_of(sweep.asker.recipe, plan, numbers, request.dask, sweep.size, told, stopped)
 
 
 class Count:

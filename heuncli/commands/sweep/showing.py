@@ -9,12 +9,12 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import same_file
 from heuncli.cli.output import say
 from heuncli.cli.units import say_what_stays
-from heuncli.commands.sweep.noticed import noticed_in, say_noticed
 from heuncli.commands.sweep.request import SweepRequest
 from heuncli.commands.sweep.running import exit_code
 from heuncli.commands.sweep.shards import shard_of
-from heuncli.commands.sweep.store import StoredSweep, opened
-from heuncli.commands.sweep.told import Telling, tell
+from heuncli.commands.sweep.store.store import StoredSweep, opened
+from heuncli.commands.sweep.telling.noticed import noticed_in, say_noticed
+from heuncli.commands.sweep.telling.told import Telling, tell
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 

@@ -6,7 +6,7 @@ import sqlite3
 import time
 
 from heuncli.cli.entry import UsageError
-from heuncli.commands.sweep.store_errors import NOT_A_STORE, OTHER
+from heuncli.commands.sweep.store.errors import NOT_A_STORE, OTHER
 from heuncli.errors import Problem
 from heuncli.version import VERSION
 

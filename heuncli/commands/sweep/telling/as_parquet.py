@@ -13,8 +13,8 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import Any
 
-from heuncli.commands.sweep.columns import SweepColumns, columns_of
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
+from heuncli.commands.sweep.telling.columns import SweepColumns, columns_of
 from heuncli.errors import Problem, SpecError
 
 GROUP = 50_000  # rows that are written together

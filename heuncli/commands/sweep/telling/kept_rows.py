@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from heuncli.commands.sweep.extremes import BestAndWorst, extremes
-from heuncli.commands.sweep.gathered import GatheredRows
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
+from heuncli.commands.sweep.telling.extremes import BestAndWorst, extremes
+from heuncli.commands.sweep.telling.gathered import GatheredRows
 from heuncli.named_tuples import NamedTuple
 
 MOST_ROWS = 60  # that are shown without --all

@@ -6,10 +6,10 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.commands.sweep.columns import WORDS, ParameterColumn, parameters_of
-from heuncli.commands.sweep.extremes import BestAndWorst
-from heuncli.commands.sweep.kept_rows import KeptRows
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
+from heuncli.commands.sweep.telling.columns import WORDS, ParameterColumn, parameters_of
+from heuncli.commands.sweep.telling.extremes import BestAndWorst
+from heuncli.commands.sweep.telling.kept_rows import KeptRows
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, largest, style, trim
 from heuncli.report.plurals import count
 from heuncli.report.table_units import Units

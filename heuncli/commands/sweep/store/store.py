@@ -26,10 +26,10 @@ from types import TracebackType
 from typing import Any
 
 from heuncli.cli.files import place_of
-from heuncli.commands.sweep.kept_heads import head_of_texts, texts_of_head
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.store_errors import told_errors
-from heuncli.commands.sweep.store_kinds import begun, require_own
+from heuncli.commands.sweep.store.errors import told_errors
+from heuncli.commands.sweep.store.heads import head_of_texts, texts_of_head
+from heuncli.commands.sweep.store.kinds import begun, require_own
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.asking import Answer, Measured
 

@@ -11,8 +11,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.commands.sweep.gathered import GatheredRows
 from heuncli.commands.sweep.rows import SweepHead
+from heuncli.commands.sweep.telling.gathered import GatheredRows
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.variants.indices import SobolIndices, sobol_indices

@@ -1,6 +1,6 @@
 """The workers of a cluster as a sweep sees them: which of them have the same heun, and what they are at.
 
-Workers come and go. Each is asked first what it has (`cluster_worker.HELLO`); one that has no heun, or another one,
+Workers come and go. Each is asked first what it has (`worker.HELLO`); one that has no heun, or another one,
 gets nothing and is told of in one line.
 """
 
@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator
 from itertools import count
 from typing import Any
 
-from heuncli.commands.sweep.cluster_lots import DEPTH, SECONDS, Lot, Pace
-from heuncli.commands.sweep.cluster_worker import HELLO, AbleWorker, HeldRecipe, answered, described
+from heuncli.commands.sweep.cluster.lots import DEPTH, SECONDS, Lot, Pace
+from heuncli.commands.sweep.cluster.worker import HELLO, AbleWorker, HeldRecipe, answered, described
 from heuncli.foreign_text import shown
 from heuncli.variants.asking import Recipe
 from heuncli.version import VERSION

@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.commands.sweep.columns import ParameterColumn, SweepColumns, columns_of, finite, why
-from heuncli.commands.sweep.gathered import GatheredRows
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.statistics import MeasureStatistics, statistics_of
+from heuncli.commands.sweep.telling.columns import ParameterColumn, SweepColumns, columns_of, finite, why
+from heuncli.commands.sweep.telling.gathered import GatheredRows
+from heuncli.commands.sweep.telling.statistics import MeasureStatistics, statistics_of
 from heuncli.foreign_text import shown
 from heuncli.report.export import FORMAT
 from heuncli.variants.asking import Measured

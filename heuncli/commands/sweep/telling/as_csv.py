@@ -6,8 +6,8 @@ import csv
 import io
 from collections.abc import Iterable, Iterator
 
-from heuncli.commands.sweep.columns import Cell, columns_of
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
+from heuncli.commands.sweep.telling.columns import Cell, columns_of
 from heuncli.foreign_text import shown
 
 

@@ -33,7 +33,7 @@ def require_tellable(how: Telling) -> None:
         return
     if how.output in (None, files.STDOUT):
         raise UsageError(Problem("bad-option", "parquet goes to a file only", hint="name it: -o sweep.parquet"))
-    from heuncli.commands.sweep.as_parquet import require_parquet
+    from heuncli.commands.sweep.telling.as_parquet import require_parquet
 
     require_parquet()
 
@@ -42,7 +42,7 @@ def tell(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> None:
     """Write the sweep; rows by rising numbers, read once. Raises OutputError."""
     if how.form == "parquet":
         from heuncli.cli import alarm
-        from heuncli.commands.sweep.as_parquet import parquet_pieces
+        from heuncli.commands.sweep.telling.as_parquet import parquet_pieces
 
         assert how.output is not None
         alarm.disarm(late=True)
@@ -54,18 +54,18 @@ def tell(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> None:
 def pieces(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
     """The sweep as text."""
     if how.form == "csv":
-        from heuncli.commands.sweep.as_csv import csv_pieces
+        from heuncli.commands.sweep.telling.as_csv import csv_pieces
 
         return csv_pieces(head, rows)
     if how.form == "json":
-        from heuncli.commands.sweep.as_json import json_pieces
+        from heuncli.commands.sweep.telling.as_json import json_pieces
 
         return json_pieces(head, rows)
     return _page(head, rows, how)
 
 
 def _page(head: SweepHead, rows: Iterable[SweptRow], how: Telling) -> Iterator[str]:
-    from heuncli.commands.sweep.page import tables
+    from heuncli.commands.sweep.telling.page import tables
 
     on_terminal = how.output is None and terminal.present()
     found = tables(head, rows, how.units, how.all, sys.stdout.encoding if on_terminal else None)

@@ -11,7 +11,7 @@ from collections import deque
 from collections.abc import Iterator
 from itertools import islice
 
-from heuncli.commands.sweep.cluster_worker import Variant
+from heuncli.commands.sweep.cluster.worker import Variant
 from heuncli.named_tuples import NamedTuple
 
 SECONDS = 2.0  # that a lot takes: long beside the way to a worker and back, short beside what is lost with one

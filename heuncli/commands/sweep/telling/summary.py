@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.sweep.columns import ParameterColumn, parameters_of
-from heuncli.commands.sweep.kept_rows import KeptRows
 from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.shown_rows import number_text, parameter_text, words
+from heuncli.commands.sweep.telling.columns import ParameterColumn, parameters_of
+from heuncli.commands.sweep.telling.kept_rows import KeptRows
+from heuncli.commands.sweep.telling.shown_rows import number_text, parameter_text, words
 from heuncli.report.digits import largest, trim
 from heuncli.report.plurals import count
 from heuncli.report.sparkline import histogram, sparkline

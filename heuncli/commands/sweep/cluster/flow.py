@@ -3,7 +3,7 @@
     answers_of(recipe, plan, numbers, address)  ->  (number, Answer), in the order in which they come
 
 This process receives every answer, and it alone writes; workers need neither the spec nor its files. Each lot of
-variants (cluster_lots.py) is a task for one worker, of which each has two at most: so it is known who had what when a
+variants (lots.py) is a task for one worker, of which each has two at most: so it is known who had what when a
 worker goes away, as many tasks are under way as workers have use for, and results do not gather on the cluster. What
 is left over of those that went is given to others; what ends a worker again and again has that for its answer. When
 this ends, by an error or a signal too, nothing of it is left on the cluster.
@@ -23,10 +23,10 @@ from itertools import chain
 from typing import Any
 
 from heuncli.cli.entry import UsageError
-from heuncli.commands.sweep.cluster_door import PATIENCE, ClusterGone, connected
-from heuncli.commands.sweep.cluster_lots import WORKERS, Lot, Lots
-from heuncli.commands.sweep.cluster_members import ClusterTask, Member, Members, named
-from heuncli.commands.sweep.cluster_worker import PartAnswered, Variant, in_words
+from heuncli.commands.sweep.cluster.door import PATIENCE, ClusterGone, connected
+from heuncli.commands.sweep.cluster.lots import WORKERS, Lot, Lots
+from heuncli.commands.sweep.cluster.members import ClusterTask, Member, Members, named
+from heuncli.commands.sweep.cluster.worker import PartAnswered, Variant, in_words
 from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import Problem
 from heuncli.variants.asking import Answer, Recipe

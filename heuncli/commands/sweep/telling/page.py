@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from heuncli.commands.sweep.kept_rows import kept
 from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.shown_rows import table_of_rows
-from heuncli.commands.sweep.statistics import statistics_of
-from heuncli.commands.sweep.statistics_tables import tables_of
-from heuncli.commands.sweep.summary import summary
+from heuncli.commands.sweep.telling.kept_rows import kept
+from heuncli.commands.sweep.telling.shown_rows import table_of_rows
+from heuncli.commands.sweep.telling.statistics import statistics_of
+from heuncli.commands.sweep.telling.statistics_tables import tables_of
+from heuncli.commands.sweep.telling.summary import summary
 from heuncli.report.sparkline import letters
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextTable
