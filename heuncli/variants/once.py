@@ -15,6 +15,7 @@ REASONS: Mapping[str, str] = MappingProxyType(
         "open": "open: the laws of rigid bodies do not give it (redundant supports)",
         "unknown": "not known: beside a singular pose",
         "beyond": "beyond the run's horizon nothing is claimed",
+        "absent": "what is measured does not happen there, as an event or a blow",
     }
 )
 

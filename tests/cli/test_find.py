@@ -6,9 +6,12 @@ import csv
 import io
 import json
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
+from heuncli.variants.asking import Word
+from heuncli.variants.once import REASONS
 from tests.shared.command import Heun
 from tests.shared.variant_scenes import CANTILEVER, PENDULUM, ROOT, TENSION, TWO_BARS
 
@@ -136,3 +139,7 @@ def test_a_time_limit(heun: Heun) -> None:
     long = PENDULUM.replace("duration: 1.2", "duration: 4000")
     done = heun("find", "-", *FOUND[2:], "--time-limit", "0.5", text=long)
     assert done.returncode == 4 and "[time-limit]" in done.stderr and done.stdout == ""
+
+
+def test_each_word_for_what_is_not_known_has_its_reason() -> None:
+    assert REASONS.keys() == {word for word in get_args(Word) if word}
