@@ -59,6 +59,8 @@ class Courses:
     def states(self, times: Array, step: Indices, n: int) -> Array:
         """States of n numbers at instants within such steps, (n_t, n)."""
         out = np.zeros(len(times) * n)
+        if not n:  # nothing moves, and no polynomial is kept of it
+            return out.reshape(len(times), n)
         flat = {"spans": self.spans.reshape(-1), "courses": self.numbers.reshape(-1)}
         integration.within(flat, n, array("d", times.tobytes()), array("i", step.astype(np.intc).tobytes()), out)
         return out.reshape(len(times), n)
