@@ -159,16 +159,21 @@ def _place(name: str) -> FilePlace:
     number = _descriptor(name)
     if number is not None:
         return FilePlace(name, os.fstat(number), number)
-    try:
-        state = _path(name).stat()
-    except FileNotFoundError:
-        state = None
+    path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
+    state = _state(name)
+    if state is None and _path(path).exists():
+        state = _path(name).stat()  # it was made a moment ago; or it is not where the system looks, which is an error
     if state is not None and not stat.S_ISREG(state.st_mode):
         return FilePlace(name, state)
-    path = os.path.realpath(name)  # which takes gone/../scene.yaml for scene.yaml; the system does not, nor the guard
-    if state is None and _path(path).exists():
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT))
     return FilePlace(path, state)
+
+
+def _state(name: str) -> os.stat_result | None:
+    """What stands at a name; None: nothing."""
+    try:
+        return _path(name).stat()
+    except FileNotFoundError:
+        return None
 
 
 def _descriptor(name: str) -> int | None:

@@ -169,6 +169,15 @@ def test_rights_are_asked_for_before_the_work(
         place_of("file")
 
 
+def test_a_file_that_another_makes_while_it_is_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not there at the first look, there at the next."""
+    monkeypatch.setattr("heuncli.cli.files._state", lambda name: None)
+    (tmp_path / "made").write_text("by another")
+    place = place_of(str(tmp_path / "made"))
+    assert place.ordinary
+    assert place.state is not None
+
+
 @pytest.mark.parametrize("linked", [False, True])
 def test_an_open_descriptor_is_written_where_it_stands(linked: bool, tmp_path: Path) -> None:
     """As `3> file` opens it: what was written before stays, and what comes after follows."""
