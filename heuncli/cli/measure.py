@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import Any, TypeVar
 
 from heuncli.cli.entry import UsageError
-from heuncli.errors import Finding, HeunError, Problem, SpecError
+from heuncli.cli.solving import all_or_errors
+from heuncli.errors import Finding, Problem, SpecError
 from heuncli.report.digits import OPEN, UNKNOWN
 from heuncli.report.export import dump
 from heuncli.results_paths import find
@@ -70,14 +71,23 @@ def parse_all(texts: Sequence[str]) -> list[MeasureRequest]:
     return all_or_errors([partial(parse, text) for text in texts])
 
 
-def check(several: Sequence[MeasureRequest], spec: Spec) -> None:
+def check(several: Sequence[MeasureRequest], spec: Spec, asked_by: str = "--measure") -> None:
     """Whether their paths lead anywhere, as far as that is seen before the run. Raises SpecError [unknown-path]."""
     names = names_in(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]
     wrong += [found for asked in several if (found := wrong_place(asked.path, spec)) is not None]
     if wrong:
-        raise SpecError(*(Problem("unknown-path", f"--measure: {what}", hint=hint) for what, hint in wrong))
+        raise SpecError(*(Problem("unknown-path", f"{asked_by}: {what}", hint=hint) for what, hint in wrong))
+
+
+def known(
+    several: Sequence[MeasureRequest], spec: Spec, others: Iterable[Callable[[], T]], asked_by: str = "--measure"
+) -> list[T]:
+    """What the others give, beside measures that are checked. Raises with all that is wrong with any of them."""
+    calls: tuple[Callable[[], Any], ...] = (partial(check, several, spec, asked_by), *others)
+    _, *given = all_or_errors(calls)
+    return given
 
 
 def wrong_place(path: str, spec: Spec) -> tuple[str, str] | None:
@@ -150,20 +160,6 @@ def measured(asked: MeasureRequest, study: Study) -> tuple[Peak, float | None]:
     except NotOneNumber as error:
         (problem,) = error.problems
         raise UsageError(problem._replace(message=f"--measure: {problem.message}")) from None
-
-
-def all_or_errors(calls: Sequence[Callable[[], T]]) -> list[T]:
-    """What all of them give. Raises what the first that fails raises, with the problems of all that do."""
-    given: list[T] = []
-    errors: list[HeunError] = []
-    for call in calls:
-        try:
-            given.append(call())
-        except HeunError as error:
-            errors.append(error)
-    if errors:
-        raise type(errors[0])(*(problem for error in errors for problem in error.problems))
-    return given
 
 
 def warnings(several: Sequence[MeasureRequest], study: Study) -> list[str]:

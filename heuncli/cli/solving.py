@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
-from heuncli.errors import Problem
+from heuncli.errors import HeunError, Problem
 from heuncli.foreign_text import shown
 from heuncli.nearest import did_you_mean
 from heuncli.results import Array, Results
 from heuncli.spec.methods import unfit_tolerance
 from heuncli.spec.models import Spec
 from heuncli.study.model.options import Options
+
+T = TypeVar("T")
 
 
 class SolverRequest(Protocol):
@@ -63,6 +65,21 @@ def overrides(words: Sequence[str]) -> dict[str, str]:
             raise UsageError(Problem("bad-option", f"--set {word}: expected NAME=VALUE", hint="such as --set L=1.2"))
         pairs[name.strip()] = value.strip()
     return pairs
+
+
+def all_or_errors(calls: Iterable[Callable[[], T]]) -> list[T]:
+    """What all of them give. Raises what the first that fails raises, with the problems of all that do."""
+    given: list[T] = []
+    errors: list[HeunError] = []
+    for call in calls:
+        try:
+            given.append(call())
+        except HeunError as error:
+            errors.append(error)
+    if errors:
+        errors[0].tell(*dict.fromkeys(problem for error in errors for problem in error.problems))
+        raise errors[0]
+    return given
 
 
 def spec_among(words: Sequence[str], command: str, usage: str) -> tuple[str, list[str]]:

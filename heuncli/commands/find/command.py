@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
@@ -48,10 +49,10 @@ def main(request: FindRequest) -> int:
     options = Options(tolerance=tolerance(request.tolerance))
     given = overrides(request.set)
     asker = Asker(Recipe(request.spec, text_in(request.spec), (asked,), options, given, request.case))
-    measure.check([asked], asker.spec)
+    scenes = measure.known([asked], asker.spec, [partial(asker.scenes, interval)], "find")[0]
     require_other_file(request.output, [request.spec])
     unit = unit_of(asked.path, asker.spec)
-    value = in_si(words, unit, asker.scenes(interval), HINT)
+    value = in_si(words, unit, scenes, HINT)
     condition = FindCondition(words.measure, words.sign, value, unit, words.unit)
     with progress(request.quiet) as tell:
         once = AnswersOnce(asker, lambda runs: tell(min(runs, 2 * scan), 2 * scan, "variants"))

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.progress import progress
-from heuncli.cli.solving import overrides, tolerance
+from heuncli.cli.solving import all_or_errors, overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
@@ -40,13 +41,13 @@ def main(request: SensitivityRequest) -> int:
     shown = units(request.units)
     asker = Asker(recipe_of(request, path))
     recipe, spec = asker.recipe, asker.spec
-    measure.check(recipe.measures, spec)
     require_other_file(request.output, [path])
     written = WrittenNumbers(recipe, spec)
+    measure.known(recipe.measures, spec, [partial(written.named, name) for name in names])
     spreads = spreads_of(request.spread, written) if request.spread is not None else []
     numbers = asked_numbers(names, spreads, written)
-    for number in numbers:
-        asker.load({number.name: number.text(number.value)})  # a value of another dimension, or none that may be set
+    # a value of another dimension, or none that may be set
+    all_or_errors(partial(asker.load, {number.name: number.text(number.value)}) for number in numbers)
     texts = zip(request.measure, recipe.measures, strict=True)
     heads = [(text, unit_of(asked.path, spec)) for text, asked in texts]
     most = 1 + USUAL * len(numbers)

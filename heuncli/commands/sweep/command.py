@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 from heuncli.cli import jobs, measure, memory
 from heuncli.cli.entry import UsageError
@@ -49,9 +50,7 @@ def main(request: SweepRequest) -> int:
     given = given_by(request, words)
     plan = plan_by(given, request)
     asker = asker_of(recipe, plan)
-    measure.check(recipe.measures, asker.spec)
-    if problems := problems_of(given, asker, recipe.overrides):
-        raise SpecError(*problems)
+    measure.known(recipe.measures, asker.spec, [partial(_require_known, given, asker, recipe)])
     plan = with_cases(plan, asker)
     _require_files(request, path)  # the tables of the spec, too
     for line in warnings_of(given, asker) if not request.quiet else ():
@@ -124,6 +123,12 @@ def asker_of(recipe: Recipe, plan: Plan) -> Asker:
             except SpecError:
                 continue
         raise error
+
+
+def _require_known(given: Sequence[GivenAxis], asker: Asker, recipe: Recipe) -> None:
+    """Raise SpecError where names or units of what is varied are wrong."""
+    if problems := problems_of(given, asker, recipe.overrides):
+        raise SpecError(*problems)
 
 
 def with_cases(plan: Plan, asker: Asker) -> Plan:

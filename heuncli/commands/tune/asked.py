@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import partial
+from itertools import chain
 
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
@@ -77,9 +79,10 @@ def _constraint(text: str) -> MeasureCondition:
 def task_of(request: TuneRequest, asked: AskedTuning, asker: Asker) -> TuneTask:
     """The task, checked against the scene. Raises UsageError, AxisError, SpecError."""
     spec, measures = asker.spec, asker.recipe.measures
-    measure.check(measures, spec)
     goal, *others = measures
-    scenes = [spec, *(scene for interval in asked.intervals for scene in asker.scenes(interval))]
+    fitting = [partial(asker.scenes, interval) for interval in asked.intervals]
+    found = measure.known(measures, spec, fitting, "tune")
+    scenes = [spec, *chain.from_iterable(found)]
     constraints = []
     for condition, one in zip(asked.conditions, others, strict=True):
         unit = unit_of(one.path, spec)
