@@ -1,4 +1,4 @@
-"""What is wrong with names of what is varied and of what is measured is told by one call, with the word that is wrong."""
+"""What is wrong with names of what is varied and of what is measured is told by one call, with the wrong word."""
 
 from __future__ import annotations
 
