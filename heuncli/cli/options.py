@@ -39,6 +39,10 @@ STEP = Option(("--step",), "The step of a method of fixed step.", "SECONDS")
 TOLERANCE = Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
 LEAST_NORM = Option(("--least-norm",), "Split what redundant supports leave open.")
 NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
+FORMATS = ("table", "json", "csv")  # of most commands
+FORMAT = Option(
+    ("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "|".join(FORMATS)
+)  # fmt: skip
 SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC", completes="spec")
 
 

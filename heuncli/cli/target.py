@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT, place_of
 from heuncli.cli.solving import choice
 from heuncli.errors import Problem
 
+ENDINGS = {"json": ".json", "csv": ".csv", "markdown": ".md", "parquet": ".parquet", "m": ".m"}
 
-def format_of(asked: str | None, output: str | None, endings: Mapping[str, str], formats: Sequence[str]) -> str:
-    """The format asked for, else what the file's name ends in, else the first; endings: formats by ending.
+
+def format_of(asked: str | None, output: str | None, formats: Sequence[str]) -> str:
+    """The format asked for, else what the file's name ends in, else the first, which .txt and no ending mean, too.
 
     An ending that means none of them is refused: a table in a file that is named a spreadsheet helps nobody.
     """
@@ -23,6 +25,7 @@ def format_of(asked: str | None, output: str | None, endings: Mapping[str, str],
         return formats[0]
     from pathlib import Path  # 3 ms that only files need
 
+    endings = {ENDINGS[form]: form for form in formats if form in ENDINGS} | {".txt": formats[0], "": formats[0]}
     name = Path(output).name
     ending = name[name.rfind(".") :].lower() if "." in name else ""
     if ending not in endings:

@@ -8,6 +8,7 @@ from pathlib import Path
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of, require_room
@@ -20,15 +21,13 @@ from heuncli.errors import Problem
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 
-FORMATS = ("table", "json", "csv")
 PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 
 
 def main(request: BalanceRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     drawn = picture_format(request)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])

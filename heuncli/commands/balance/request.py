@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 from heuncli.named_tuples import NamedTuple
 
 
@@ -10,14 +10,7 @@ class BalanceRequest(NamedTuple):
     """Mass effects over a cycle: force and moment on the foundation by orders, counterweights, a flywheel."""
 
     spec: Annotated[str, SPEC]
-    format: Annotated[
-        str | None,
-        Option(
-            ("--format",),
-            "How to write it. Default: by the name's end of -o FILE, else table.",
-            "table|json|csv",
-        ),
-    ] = None
+    format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
         str | None, Option(("--save",), "Draw the orders there, too: chart.svg; .png and .pdf by matplotlib.", "FILE")

@@ -10,6 +10,7 @@ from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
 from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, warn
@@ -28,8 +29,6 @@ from heuncli.report.text_table import WIDTH, plain
 from heuncli.spec.load import load
 from heuncli.spec.methods import meant
 
-FORMATS = ("table", "json", "csv")
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 LEAST_WIDTH = 60  # of a terminal that a chart is drawn for
 PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
@@ -37,7 +36,7 @@ PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 def main(request: ChartRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     drawn = picture_format(request)
     wanted = ChartOptions(
         methods(request.methods),

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, Option
 from heuncli.named_tuples import NamedTuple
 
 
@@ -10,14 +10,7 @@ class ChartRequest(NamedTuple):
     """Speed against accuracy: methods at several tolerances or steps, which ones fail, and where."""
 
     spec: Annotated[str, SPEC]
-    format: Annotated[
-        str | None,
-        Option(
-            ("--format",),
-            "How to write it. Default: by the name's end of -o FILE, else table.",
-            "table|json|csv",
-        ),
-    ] = None
+    format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     save: Annotated[
         str | None, Option(("--save",), "Draw it there, too: chart.svg; .png and .pdf by matplotlib.", "FILE")

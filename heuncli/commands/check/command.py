@@ -22,7 +22,6 @@ from heuncli.commands.check.told import FORMS, AllChecked
 from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import shown
 
-ENDINGS = {".json": "json", ".txt": "table", ".md": "markdown", "": "table"}
 NAMED = "name a folder of specs, or the files themselves; folders named broken and hidden ones are passed by"
 OF_A_JOB = ("markdown", "github")  # formats that tell errors, too: nobody sees standard error beside them
 
@@ -37,7 +36,7 @@ def main(request: CheckRequest) -> int:
             say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
     if not found:
         raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     kept = goldens.files_of(found, request.golden) if request.golden is not None else {}
     orphans = _without_spec(request, found, kept)
     chosen = picked(found, request.select) if request.select is not None else found

@@ -13,14 +13,13 @@ from heuncli.commands.diff.told import FORMS, Difference, ordered
 from heuncli.telling.changes import EXTRA, MISSING, Change, changes
 from heuncli.telling.kept import KeptRun
 
-ENDINGS = {".json": "json", ".txt": "table", ".md": "markdown", "": "table"}
 CHANGED = 1
 SAMPLED = "extremes of results in JSON are those of their samples, and these lie at other instants"
 
 
 def main(request: DiffRequest) -> int:
     """Run the command; returns the exit code."""
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     require_other_file(request.output, [request.before, request.after])
     before, after = side_of(request.before), side_of(request.after)
     require_alike(before, after)

@@ -8,6 +8,7 @@ from functools import partial
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
+from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit
 from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, tolerance
@@ -16,7 +17,7 @@ from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.find.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
-from heuncli.commands.find.request import FORMATS, FindRequest
+from heuncli.commands.find.request import FindRequest
 from heuncli.commands.find.results import CourseFindings, FindCondition
 from heuncli.commands.find.study import SIDES, look
 from heuncli.errors import Problem, SolveError
@@ -30,7 +31,6 @@ from heuncli.variants.conditions import condition_of, in_si
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of
 
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 SCAN, MOST = 7, 300  # variants of the scan, and in all, where it is not said
 FORM = "expected MEASURE = VALUE, or <, >, <=, >= between the two"
 HINT = "such as 'max joints.main.force = 10 kN'"
@@ -41,7 +41,7 @@ MOST_SCAN = 10_000
 def main(request: FindRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     interval, words = interval_of(request.unknown), condition_of(request.condition, FORM, HINT)
     asked = measure.parse(words.measure)
     scan, most = counts(request)

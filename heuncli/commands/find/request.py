@@ -2,10 +2,8 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, TOLERANCE, UNITS, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
-
-FORMATS = ("table", "json", "csv")
 
 
 class FindRequest(NamedTuple):
@@ -31,14 +29,7 @@ class FindRequest(NamedTuple):
         int | None, Option(("--evaluations",), "Solve no more variants than this. Default: 300.", "N")
     ] = None
     tolerance: Annotated[float | None, TOLERANCE] = None
-    format: Annotated[
-        str | None,
-        Option(
-            ("--format",),
-            "How to write it. Default: by the name's end of -o FILE, else table.",
-            "|".join(FORMATS),
-        ),
-    ] = None
+    format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
     strict: Annotated[

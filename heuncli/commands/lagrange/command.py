@@ -19,13 +19,12 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 
 FORMATS = ("table", "json", "csv", "m")
-ENDINGS = {".json": "json", ".csv": "csv", ".m": "m", ".txt": "table", "": "table"}
 
 
 def main(request: LagrangeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     require_together(request, form)
     shown = units(request.units)
     asked = LagrangeQuestion(

@@ -11,12 +11,11 @@ from heuncli.report.methods_table import block, table
 from heuncli.report.text_table import WIDTH, plain
 
 FORMATS = ("table", "json")
-ENDINGS = {".json": "json", ".txt": "table", "": "table"}
 
 
 def main(request: MethodsRequest) -> int:
     """Run the command; returns the exit code."""
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     text = json.dumps(block(), indent=1) + "\n" if form == "json" else plain(table(), WIDTH)
     emit(text, request.output)
     return 0

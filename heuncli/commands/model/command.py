@@ -16,13 +16,12 @@ from heuncli.spec.load import load
 from heuncli.study.workflow import describe
 
 FORMATS = ("text", "json")
-ENDINGS = {".json": "json", ".txt": "text", "": "text"}
 
 
 def main(request: ModelRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from heuncli.cli.guard import require_other_file
+from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
@@ -13,14 +14,11 @@ from heuncli.commands.modes.without import named, without
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 
-FORMATS = ("table", "json", "csv")
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
-
 
 def main(request: ModesRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     entries = named(spec, request.without)
     require_other_file(request.output, [request.spec])

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
 from heuncli.named_tuples import NamedTuple
 
 
@@ -10,14 +10,7 @@ class ModesRequest(NamedTuple):
     """Frequencies, damping and shapes of small oscillations about the pose at rest."""
 
     spec: Annotated[str, SPEC]
-    format: Annotated[
-        str | None,
-        Option(
-            ("--format",),
-            "How to write them. Default: by the name's end of -o FILE, else table.",
-            "table|json|csv",
-        ),
-    ] = None
+    format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None

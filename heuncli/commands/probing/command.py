@@ -15,13 +15,12 @@ from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 
 FORMATS = ("table", "json")
-ENDINGS = {".json": "json", ".txt": "table", "": "table"}
 
 
 def main(request: ProbeRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     found = probe(spec, Options(time_limit=alarm.remaining()))

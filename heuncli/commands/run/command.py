@@ -31,8 +31,6 @@ from heuncli.telling.selection import told_by_default
 if TYPE_CHECKING:
     from heuncli.study.ask.measure import MeasureRequest
 
-ENDINGS = {".json": "json", ".csv": "csv", ".md": "markdown", ".txt": "table", "": "table"}
-
 
 def main(request: RunRequest) -> int:
     """Run the command; returns the exit code."""
@@ -41,7 +39,7 @@ def main(request: RunRequest) -> int:
 
         watch(request, main)
     require_other_file(request.output, [request.spec])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     asked: list[MeasureRequest] = []
     if request.measure:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need

@@ -8,6 +8,7 @@ from functools import partial
 from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
+from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit
 from heuncli.cli.progress import progress
 from heuncli.cli.solving import all_or_errors, overrides, tolerance
@@ -16,7 +17,7 @@ from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
 from heuncli.commands.sensitivity.derivative import derivative
 from heuncli.commands.sensitivity.page import FORMS, MeasureFindings, SensitivityPage
-from heuncli.commands.sensitivity.request import FORMATS, SensitivityRequest
+from heuncli.commands.sensitivity.request import SensitivityRequest
 from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
 from heuncli.commands.sensitivity.spread import NumberSpread, summed
 from heuncli.commands.sensitivity.spread_words import spreads_of
@@ -28,7 +29,6 @@ from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of
 from heuncli.variants.written import WrittenNumber, WrittenNumbers
 
-ENDINGS = {".json": "json", ".csv": "csv", ".txt": "table", "": "table"}
 USUAL = 10  # variants for each number, mostly
 NO_ERROR = ("no-error", "the run states no error of it, as of what is counted: no step could be chosen")
 
@@ -37,7 +37,7 @@ def main(request: SensitivityRequest) -> int:
     """Run the command; returns the exit code."""
     path, names = spec_and_names(request.words)
     require_other_file(request.output, [path])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     shown = units(request.units)
     asker = Asker(recipe_of(request, path))
     recipe, spec = asker.recipe, asker.spec

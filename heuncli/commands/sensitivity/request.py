@@ -2,10 +2,8 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, TIME_LIMIT, TOLERANCE, UNITS, Option
 from heuncli.named_tuples import NamedTuple
-
-FORMATS = ("table", "json", "csv")
 
 
 class SensitivityRequest(NamedTuple):
@@ -36,14 +34,7 @@ class SensitivityRequest(NamedTuple):
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     tolerance: Annotated[float | None, TOLERANCE] = None
-    format: Annotated[
-        str | None,
-        Option(
-            ("--format",),
-            "How to write it. Default: by the name's end of -o FILE, else table.",
-            "|".join(FORMATS),
-        ),
-    ] = None
+    format: Annotated[str | None, FORMAT] = None
     output: Annotated[str | None, OUTPUT] = None
     units: Annotated[str | None, UNITS] = None
     strict: Annotated[bool, Option(("--strict",), "Leave with 1 if a derivative is refused.")] = False

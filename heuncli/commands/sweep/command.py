@@ -22,7 +22,7 @@ from heuncli.commands.sweep.shards import shard_of
 from heuncli.commands.sweep.showing import show
 from heuncli.commands.sweep.store.store import Store
 from heuncli.commands.sweep.table import axes_in
-from heuncli.commands.sweep.telling.told import ENDINGS, Telling, require_tellable
+from heuncli.commands.sweep.telling.told import Telling, require_tellable
 from heuncli.errors import Problem, SpecError
 from heuncli.records import replace
 from heuncli.spec.names import ALL_CASES
@@ -62,7 +62,7 @@ def main(request: SweepRequest) -> int:
 
 def telling_of(request: SweepRequest) -> Telling:
     """How the sweep is told. Raises UsageError, SpecError."""
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     how = Telling(form, request.output, units(request.units), request.all)
     require_tellable(how)
     return how

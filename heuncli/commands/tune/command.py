@@ -29,7 +29,6 @@ from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
 from heuncli.variants.asking import Asker, Recipe
 
-ENDINGS = {".json": "json", ".txt": "table", "": "table"}
 LIMIT_REACHED, NOT_GOOD = 4, 1
 
 
@@ -37,7 +36,7 @@ def main(request: TuneRequest) -> int:
     """Run the command; returns the exit code."""
     asked = asked_by(request)
     require_other_file(request.output, [asked.path])
-    form = format_of(request.format, request.output, ENDINGS, FORMATS)
+    form = format_of(request.format, request.output, FORMATS)
     shown_in = units(request.units)
     require_sense(request, asked)
     asker = Asker(recipe_of(request, asked))

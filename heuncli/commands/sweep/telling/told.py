@@ -15,8 +15,6 @@ from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, plain
 
-ENDINGS = {".json": "json", ".csv": "csv", ".parquet": "parquet", ".txt": "table", "": "table"}
-
 
 class Telling(NamedTuple):
     """How a sweep is told: in which form, where (None: standard output), in which units of tables, all rows or some."""
