@@ -70,14 +70,14 @@ def parse_all(texts: Sequence[str]) -> list[MeasureRequest]:
     return all_or_errors([partial(parse, text) for text in texts])
 
 
-def check(several: Sequence[MeasureRequest], spec: Spec) -> None:
-    """Whether their paths lead anywhere, as far as that is seen before the run. Raises SpecError [unknown-path]."""
+def check(several: Sequence[MeasureRequest], spec: Spec, place: str = "--measure") -> None:
+    """Whether their paths lead anywhere, as far as that is seen before the run; place: where they stand. Raises SpecError [unknown-path]."""
     names = names_in(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]
     wrong += [found for asked in several if (found := wrong_place(asked.path, spec)) is not None]
     if wrong:
-        raise SpecError(*(Problem("unknown-path", f"--measure: {what}", hint=hint) for what, hint in wrong))
+        raise SpecError(*(Problem("unknown-path", f"{place}: {what}", hint=hint) for what, hint in wrong))
 
 
 def wrong_place(path: str, spec: Spec) -> tuple[str, str] | None:
