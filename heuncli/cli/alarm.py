@@ -7,6 +7,7 @@ timer (Windows) the loops' own looks remain, and one at the end. Impure: the pro
 
 from __future__ import annotations
 
+import sys
 import time
 from collections.abc import Callable, Iterator
 from types import FrameType
@@ -104,12 +105,20 @@ def _timer(seconds: float) -> Callable[[], None]:
 
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         return lambda: None
-    before = signal.signal(signal.SIGALRM, _ring)
+    before, told = signal.signal(signal.SIGALRM, _ring), sys.unraisablehook
+
+    def swallowed(what: sys.UnraisableHookArgs) -> None:
+        """An alarm that came while an object was destroyed says nothing: the next one is on its way."""
+        if not isinstance(what.exc_value, TimeUp):
+            told(what)
+
+    sys.unraisablehook = swallowed
     signal.setitimer(signal.ITIMER_REAL, seconds, REPEAT)
 
     def undo() -> None:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
+        sys.unraisablehook = told
 
     return undo
 

@@ -8,6 +8,7 @@ import os
 import signal
 import threading
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,7 @@ import numpy as np
 import pytest
 
 from heuncli.cli import alarm
+from heuncli.errors import LimitError
 from heuncli.integration import evaluator
 from heuncli.kernel.choose import KERNEL
 from heuncli.spec.load import load
@@ -89,6 +91,26 @@ def test_whatever_takes_too_long_is_ended(
     assert (done.returncode, done.stdout) == (4, "")
     assert "[time-limit]" in done.stderr and phase in done.stderr
     assert signal.getitimer(signal.ITIMER_REAL) == (0.0, 0.0)
+
+
+def test_an_alarm_that_an_object_swallows_on_its_way_out_says_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    """A generator that is given up with processes to wait for; the next alarm ends what goes on behind it."""
+
+    def busy() -> Iterator[int]:
+        try:
+            yield 0
+        finally:
+            time.sleep(60.0)
+
+    def work() -> None:
+        generator = busy()
+        next(generator)
+        del generator
+        forever()
+
+    with pytest.raises(LimitError, match="was reached"):
+        alarm.limited(work, 0.05, grace=0.0)
+    assert capsys.readouterr().err == ""
 
 
 def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
