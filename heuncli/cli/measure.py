@@ -71,7 +71,10 @@ def parse_all(texts: Sequence[str]) -> list[MeasureRequest]:
 
 
 def check(several: Sequence[MeasureRequest], spec: Spec, place: str = "--measure") -> None:
-    """Whether their paths lead anywhere, as far as that is seen before the run; place: where they stand. Raises SpecError [unknown-path]."""
+    """Whether their paths lead anywhere, as far as that is seen before the run; place: where they stand.
+
+    Raises SpecError [unknown-path].
+    """
     names = names_in(spec)
     runs = {name: section.from_ is not None for name, section in spec.sections.items()}
     wrong = [found for asked in several if (found := wrong_path(asked.path, names, runs)) is not None]

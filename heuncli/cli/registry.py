@@ -78,7 +78,6 @@ COMMANDS = (
     Command("schema"),
     Command("new"),
 )
-LATER_COMMANDS: tuple[str, ...] = ()
 
 
 def command_of(name: str) -> Command | None:

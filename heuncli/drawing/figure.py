@@ -111,7 +111,7 @@ Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Upright | Blank | Bars 
 
 
 class Scaling(NamedTuple):
-    """An axis: what it tells, with its unit, and its ends; logarithmic; named: places that have names in place of numbers."""
+    """An axis: what it tells, with its unit, and its ends; named: places that have names in place of numbers."""
 
     label: str
     low: float

@@ -311,7 +311,7 @@ def pieces(points: Array) -> list[Array]:
 
 
 def thinned(points: Array) -> Array:
-    """Without the points (n, 2) that lie on the line between their neighbours, to a part of a pixel (Douglas-Peucker)."""
+    """Without the points (n, 2) that lie on the line between their neighbours (Douglas and Peucker, 1973)."""
     keep = np.zeros(len(points), dtype=bool)
     keep[[0, -1]] = True
     stack = [(0, len(points) - 1)]

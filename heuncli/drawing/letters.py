@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -205,7 +206,7 @@ def _below(panel: Panel, canvas: Canvas) -> list[str]:
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
     """The dots of a line through points."""
     points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    for (x0, y0), (x1, y1) in zip(points[:-1], points[1:], strict=True):
+    for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
             canvas.line(x0, y0, x1, y1, number, every)
 

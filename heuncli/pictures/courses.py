@@ -24,7 +24,7 @@ MOST = 4000  # of the instants at which extremes are looked for, as many as a pi
 
 @record
 class Pictured:
-    """A solved scene in a picture, and how it is called there: its file, its case, or nothing where it is the only one."""
+    """A solved scene in a picture, and how it is called there: its file and case; nothing where it is the only one."""
 
     name: str
     study: Study

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.scenery.solids import Surface, surfaces_of
-from heuncli.spec.models import Spec
+from heuncli.spec.models import Actuator, Spec, Spring
 
 GROUND = "ground"
 
@@ -67,9 +67,9 @@ def machine_of(spec: Spec) -> Machine:
         for name, j in spec.joints.items()
     )
     lines = tuple(
-        LineLook(name, force.type, force.from_.body, np.array(force.from_.point), force.to.body, np.array(force.to.point))
-        for name, force in spec.forces.items()
-        if force.type in ("spring", "actuator")
+        LineLook(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
+        for name, f in spec.forces.items()
+        if isinstance(f, Spring | Actuator)
     )
     bodies = tuple(_body(name, spec, joints, lines) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
@@ -91,7 +91,7 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
 
 def _through(ends: list[Array]) -> Array:
     """A line through points, (n, 3), from one end of the longest way on to the nearest each time."""
-    points = np.unique(np.round(np.array(ends), 12), axis=0)
+    points: Array = np.unique(np.round(np.array(ends, dtype=np.float64), 12), axis=0)
     if len(points) < 3:
         return points
     apart = np.linalg.norm(points[:, None] - points[None], axis=2)
@@ -100,4 +100,4 @@ def _through(ends: list[Array]) -> Array:
     while left:
         order.append(min(left, key=lambda k: (apart[order[-1], k], k)))
         left.remove(order[-1])
-    return np.asarray(points[order])
+    return np.asarray(points[order], dtype=np.float64)

@@ -74,8 +74,8 @@ def _revolved(start: Array, end: Array, first: float, last: float, inner: float)
     """A cylinder, cone or tube: its wall in flat faces, its ends, its rims and two lines along it."""
     axis = (end - start) / np.linalg.norm(end - start)
     low, high = circle(start, axis, first), circle(end, axis, last)
-    corners, faces = [low, high], []
-    n = ROUND
+    corners, n = [low, high], ROUND
+    faces: list[tuple[int, ...]] = []
     for k in range(n):
         j = (k + 1) % n
         faces.append((k, j, n + j, n + k))
@@ -85,7 +85,8 @@ def _revolved(start: Array, end: Array, first: float, last: float, inner: float)
         corners += [inner_low, inner_high]
         for k in range(n):
             j = (k + 1) % n
-            faces += [(2 * n + j, 2 * n + k, 3 * n + k, 3 * n + j), (j, k, 2 * n + k, 2 * n + j), (n + k, n + j, 3 * n + j, 3 * n + k)]
+            faces.append((2 * n + j, 2 * n + k, 3 * n + k, 3 * n + j))
+            faces += [(j, k, 2 * n + k, 2 * n + j), (n + k, n + j, 3 * n + j, 3 * n + k)]
         edges += [_closed(inner_low), _closed(inner_high)]
     else:
         faces += [tuple(reversed(range(n))), tuple(range(n, 2 * n))]

@@ -45,11 +45,11 @@ class PlotRequest(NamedTuple):
     ] = None
     view: Annotated[
         str | None,
-        Option(("--view",), "From where a scene is seen: along x, y or z, or azimuth and elevation [deg].", "x|y|z|A,E"),
+        Option(("--view",), "From where a scene is seen: along x, y, z, or azimuth, elevation [deg].", "x|y|z|A,E"),
     ] = None
-    tension_side: Annotated[
-        bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")
-    ] = False
+    tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
+        False
+    )
     width: Annotated[int | None, Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
