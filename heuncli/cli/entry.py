@@ -11,7 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
-from heuncli.cli import alarm, at_once, memory, plain, registry
+from heuncli.cli import alarm, at_once, memory, plain
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.options import fields_of
 from heuncli.cli.output import emit, say
@@ -103,9 +103,6 @@ def _command(argv: list[str]) -> int:
     if (text := at_once.text_for(argv)) is not None:
         emit(text)
         return 0
-    if argv and argv[0] in registry.LATER_COMMANDS:
-        known = ", ".join(command.name for command in registry.COMMANDS)
-        raise UsageError(Problem("not-yet", f"{argv[0]}: not in this version yet", hint=f"there are: {known}"))
     asked = plain.read(argv) or _through_typer(argv)
     if isinstance(asked, int):
         return asked

@@ -70,6 +70,7 @@ COMMANDS = (
     Command("find", page="variants"),
     Command("sensitivity", page="variants"),
     Command("tune", page="variants", grace=0.8, phase="while variants were tried"),
+    Command("plot", page="pictures"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
     Command("methods", page="methods"),
@@ -77,7 +78,6 @@ COMMANDS = (
     Command("schema"),
     Command("new"),
 )
-LATER_COMMANDS = ("plot",)  # not in this version yet
 
 
 def command_of(name: str) -> Command | None:

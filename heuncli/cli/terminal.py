@@ -8,7 +8,8 @@ from collections.abc import Sequence
 
 from heuncli.cli.line_width import line_width
 from heuncli.report.page_width import fit
-from heuncli.report.text_table import TextTable, plain, wrapped
+from heuncli.report.text_table import TextTable, plain
+from heuncli.wrapping import wrapped
 
 LEAST_WIDTH = 40  # below it words stand one to a line, and nothing can be read across
 BOLD, CYAN, END = "\x1b[1m", "\x1b[36m", "\x1b[0m"

@@ -5,13 +5,13 @@ from __future__ import annotations
 import importlib.util
 import io
 
-from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Text, corners
+from heuncli.drawing.picture import SHAPES, Area, Line, Mark, Picture, Text, corners
 from heuncli.errors import Problem, SpecError
 
 PER_INCH = 96.0  # pixels
 POINTS = 72.0 / PER_INCH  # in a pixel
 FINE = 2.0  # pixels of a PNG in one of the drawing
-INSTALL = 'pip install "heuncli[plot]"; or --save chart.svg, which needs nothing'
+INSTALL = 'pip install "heuncli[plot]"; or a name that ends in .svg, which needs nothing'
 
 
 def require_plot(what: str) -> None:
@@ -38,6 +38,8 @@ def rendered(picture: Picture, form: str) -> bytes:
             width = shape.width * POINTS
             style = (0.0, tuple(x * POINTS / width for x in shape.dash)) if shape.dash else "solid"
             axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, scalex=False, scaley=False)
+        elif isinstance(shape, Area):
+            axes.add_patch(Polygon(shape.points, facecolor=shape.colour, alpha=shape.opacity, linewidth=0.0, zorder=1))
         elif isinstance(shape, Mark):
             face = shape.colour if shape.filled else "#ffffff"
             own = {"facecolor": face, "edgecolor": shape.colour, "linewidth": 1.2 * POINTS, "zorder": 3}

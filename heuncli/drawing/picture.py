@@ -19,12 +19,22 @@ SHAPES: dict[str, tuple[tuple[float, float], ...]] = {  # corners about the midd
 
 
 class Line(NamedTuple):
-    """A polyline; dash: lengths of strokes and gaps."""
+    """A polyline; dash: lengths of strokes and gaps; name: what a reader is told of it, where it is of something."""
 
     points: tuple[tuple[float, float], ...]
     colour: str = "#000000"
     width: float = 1.0
     dash: tuple[float, ...] = ()
+    name: str = ""
+
+
+class Area(NamedTuple):
+    """A filled polygon; opacity: 0 to 1; name: as of a line."""
+
+    points: tuple[tuple[float, float], ...]
+    colour: str
+    opacity: float = 1.0
+    name: str = ""
 
 
 class Mark(NamedTuple):
@@ -51,7 +61,7 @@ class Text(NamedTuple):
     turned: bool = False
 
 
-Shape = Line | Mark | Text
+Shape = Line | Area | Mark | Text
 
 
 class Picture(NamedTuple):
@@ -86,7 +96,12 @@ def element(shape: Shape) -> str:
         dash = f' stroke-dasharray="{" ".join(map(number, shape.dash))}"' if shape.dash else ""
         return (
             f'<polyline points="{places(shape.points)}" fill="none" stroke="{shape.colour}"'
-            f' stroke-width="{number(shape.width)}" stroke-linejoin="round"{dash}/>'
+            f' stroke-width="{number(shape.width)}" stroke-linejoin="round"{dash}{closing("polyline", shape.name)}'
+        )
+    if isinstance(shape, Area):
+        opacity = f' fill-opacity="{number(shape.opacity)}"' if shape.opacity < 1.0 else ""
+        return (
+            f'<polygon points="{places(shape.points)}" fill="{shape.colour}"{opacity}{closing("polygon", shape.name)}'
         )
     if isinstance(shape, Mark):
         look = f'fill="{shape.colour if shape.filled else "#ffffff"}" stroke="{shape.colour}" stroke-width="1.2"'
@@ -99,6 +114,11 @@ def element(shape: Shape) -> str:
         f'<text x="{number(shape.x)}" y="{number(shape.y)}" font-size="{number(shape.size)}"'
         f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{turned}>{escaped(shape.text)}</text>'
     )
+
+
+def closing(tag: str, name: str) -> str:
+    """The end of an element, which holds the name of what it shows."""
+    return f"><title>{escaped(name)}</title></{tag}>" if name else "/>"
 
 
 def corners(mark: Mark) -> tuple[tuple[float, float], ...]:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from heuncli.report.text_table import GAP, INDENT, TextTable, aligned, wrapped
+from heuncli.report.text_table import GAP, INDENT, TextTable, aligned
+from heuncli.wrapping import wrapped
 
 GOES_ON = "continued"
 LEAST_TEXT = 24  # places that a last column of text must have to go on in lines of its own

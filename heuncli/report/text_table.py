@@ -7,11 +7,11 @@ from typing import Literal
 
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
+from heuncli.wrapping import wrapped
 
 GAP = "  "
 INDENT = "  "
 WIDTH = 120  # of tables that no terminal sets one for
-MORE = 4  # by which the lines that a long heading, title or note goes on in stand further in
 Align = Literal["left", "point"]  # `point`: decimal points stand under each other
 
 
@@ -66,27 +66,6 @@ def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
         first, *rest = wrapped(shown(text), width - indent, 0)
         found += [label.ljust(indent) + first, *(" " * indent + line for line in rest)]
     return "".join(line + "\n" for line in found)
-
-
-def wrapped(text: str, width: int | None, more: int = MORE) -> list[str]:
-    """A text in lines no wider than that; `textwrap` would have to be imported for it, and knows no clauses."""
-    lines = [text]
-    while width is not None and len(lines[-1]) > width:
-        line, start = lines[-1], len(lines[-1]) - len(lines[-1].lstrip())
-        cut = _end_of_line(line, start, width)
-        if cut < 0:
-            break  # one long word
-        lead = " " * (start if len(lines) > 1 else start + more)
-        lines[-1:] = [line[:cut].rstrip(), lead + line[cut:].lstrip()]
-    return lines
-
-
-def _end_of_line(line: str, start: int, width: int) -> int:
-    """The blank at which a line is parted: behind a clause where one ends in its last third, not within brackets."""
-    blanks = [i for i in range(start + 1, min(width + 1, len(line))) if line[i] == " "]
-    late = [i for i in blanks if line[i - 1] in ",;" and 3 * i > 2 * width]
-    ends = [i for i in late if line.count("(", 0, i) == line.count(")", 0, i)]
-    return max(ends or blanks, default=line.find(" ", max(width, start + 1)))
 
 
 def markdown(table: TextTable) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from heuncli.report.page_width import fit
-from heuncli.report.text_table import TextColumn, TextTable, plain, wrapped
+from heuncli.report.text_table import TextColumn, TextTable, plain
+from heuncli.wrapping import wrapped
 
 WIDE = TextTable(
     "JOINTS",

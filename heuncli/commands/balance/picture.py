@@ -6,7 +6,7 @@ from heuncli.commands.balance.page import unit_of
 from heuncli.commands.balance.results import BalanceResults
 from heuncli.drawing.picture import Line, Picture, Shape, Text
 from heuncli.foreign_text import shown
-from heuncli.report.text_table import wrapped
+from heuncli.wrapping import wrapped
 
 WIDTH, PANEL = 760.0, 150.0  # pixels: of the whole, and how high the field of a quantity is
 LEFT, RIGHT, GAP = 92.0, 24.0, 62.0

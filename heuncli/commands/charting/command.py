@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from pathlib import Path
 
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
-from heuncli.cli.files import STDOUT
-from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
+from heuncli.cli.picture_files import as_file, saved_beside
 from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, warn
-from heuncli.cli.target import format_of, require_room
+from heuncli.cli.target import format_of
 from heuncli.commands.charting import page as report
 from heuncli.commands.charting.plan import ChartOptions
 from heuncli.commands.charting.request import ChartRequest
@@ -30,14 +28,13 @@ from heuncli.spec.load import load
 from heuncli.spec.methods import meant
 
 LEAST_WIDTH = 60  # of a terminal that a chart is drawn for
-PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
 
 def main(request: ChartRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, FORMATS)
-    drawn = picture_format(request)
+    drawn = saved_beside(request.save, request.output)
     wanted = ChartOptions(
         methods(request.methods),
         numbers("--tolerances", request.tolerances, 1.0),
@@ -50,7 +47,9 @@ def main(request: ChartRequest) -> int:
     with progress(request.quiet) as tell:
         found = chart(spec, replace(wanted, time_limit=alarm.remaining()), tell)
     if drawn is not None and request.save is not None:
-        save(drawn(found), request.save)
+        from heuncli.commands.charting.picture import picture
+
+        save(as_file(picture(found), drawn), request.save)
     emit(text(found, form, request.output), request.output, late=True)
     warn(spec, None, request.quiet)
     return 0
@@ -74,40 +73,6 @@ def text(found: ChartResults, form: str, output: str | None) -> str:
         width = WIDTH
         rows = "".join(plain(part, WIDTH) for part in fit(own, WIDTH))
     return f"{report.write_heading(found, width)}\n{rows}\n{draw(found, min(width, FIELD))}"
-
-
-def picture_format(request: ChartRequest) -> Callable[[ChartResults], bytes] | None:
-    """How the picture is drawn that is to be saved, by the end of its name."""
-    if request.save is None:
-        return None
-    form = PICTURES.get(Path(request.save).suffix.lower())
-    if form is None:
-        hint = f"known endings: {', '.join(PICTURES)}"
-        raise UsageError(Problem("bad-option", f"--save {request.save}: no picture is known by that ending", hint=hint))
-    require_room(request.save, "--save")
-    if same_file("/dev/stdout" if request.output in (None, STDOUT) else request.output, request.save):
-        message = f"--save {request.save}: that is where the table goes"
-        raise UsageError(Problem("bad-option", message, hint="name another file"))
-    if form == "svg":
-        return _svg
-    from heuncli.drawing.matplotlib_file import require_plot
-
-    require_plot(f"--save {request.save}")
-    return lambda found: _plotted(found, form)
-
-
-def _svg(found: ChartResults) -> bytes:
-    from heuncli.commands.charting.picture import picture
-    from heuncli.drawing.picture import svg
-
-    return svg(picture(found)).encode()
-
-
-def _plotted(found: ChartResults, form: str) -> bytes:
-    from heuncli.commands.charting.picture import picture
-    from heuncli.drawing.matplotlib_file import rendered
-
-    return rendered(picture(found), form)
 
 
 def methods(words: str | None) -> tuple[str, ...] | None:

@@ -6,7 +6,7 @@ import string
 
 from heuncli.commands.charting.results import ChartResults
 from heuncli.commands.charting.scale import failures, points, power, scales, seconds
-from heuncli.report.text_table import wrapped
+from heuncli.wrapping import wrapped
 
 WIDTH = 100  # columns of the field
 ROWS = 2  # a decade of error

@@ -17,8 +17,8 @@ from heuncli.drawing.picture import SHAPES, Line, Mark, Picture, Shape, Text
 from heuncli.foreign_text import shown
 from heuncli.method_rows import row_of
 from heuncli.named_tuples import NamedTuple
-from heuncli.report.text_table import wrapped
 from heuncli.tolerances import LOST
+from heuncli.wrapping import wrapped
 
 WIDTH, FIELD = 986.0, 480.0  # pixels: of the whole, and how high the field is
 LEFT, RIGHT, BELOW = 84.0, 176.0, 56.0  # of the field

@@ -1,0 +1,49 @@
+"""Pictures as files: by the end of a name as SVG, which needs nothing, or as PNG or PDF by matplotlib."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.files import STDOUT
+from heuncli.cli.guard import same_file
+from heuncli.cli.target import require_room
+from heuncli.drawing.picture import Picture, svg
+from heuncli.errors import Problem
+
+PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
+
+
+def picture_form(name: str, option: str) -> str:
+    """The form of a picture by the end of its name, before any work. Raises UsageError, SpecError, OutputError."""
+    form = PICTURES.get(Path(name).suffix.lower())
+    if form is None:
+        hint = f"known endings: {', '.join(PICTURES)}"
+        raise UsageError(Problem("bad-option", f"{option} {name}: no picture is known by that ending", hint=hint))
+    require_room(name, option)
+    if form != "svg":
+        from heuncli.drawing.matplotlib_file import require_plot
+
+        require_plot(f"{option} {name}")
+    return form
+
+
+def saved_beside(name: str | None, output: str | None) -> str | None:
+    """The form of the picture of `--save`, which goes elsewhere than the table. Raises as `picture_form`."""
+    if name is None:
+        return None
+    form = picture_form(name, "--save")
+    if same_file("/dev/stdout" if output in (None, STDOUT) else output, name):
+        raise UsageError(
+            Problem("bad-option", f"--save {name}: that is where the table goes", hint="name another file")
+        )
+    return form
+
+
+def as_file(picture: Picture, form: str) -> bytes:
+    """The picture in a form."""
+    if form == "svg":
+        return svg(picture).encode()
+    from heuncli.drawing.matplotlib_file import rendered
+
+    return rendered(picture, form)

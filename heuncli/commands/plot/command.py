@@ -1,0 +1,31 @@
+"""`heun plot`: read, solve, draw."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from heuncli.cli.guard import require_other_file
+from heuncli.cli.output import emit, save
+from heuncli.cli.picture_files import as_file, picture_form
+from heuncli.cli.units import units
+from heuncli.commands.plot.asked import asked
+from heuncli.commands.plot.request import PlotRequest
+from heuncli.commands.plot.terminals import in_letters
+from heuncli.drawing.figure import Figure
+
+
+def main(request: PlotRequest) -> int:
+    """Run the command; returns the exit code."""
+    found = asked(request.words)
+    require_other_file(request.output, found.files)
+    form = picture_form(request.output, "-o") if request.output is not None else None
+    units(request.units)  # said before the work
+    draw = import_module(f"heuncli.commands.plot.{found.what}").draw
+    figure: Figure = draw(found, request)
+    if form is None or request.output is None:
+        emit(in_letters(figure, request.width), None)
+        return 0
+    from heuncli.drawing.layout import laid_out
+
+    save(as_file(laid_out(figure), form), request.output)
+    return 0

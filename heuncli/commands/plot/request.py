@@ -1,0 +1,65 @@
+"""What `heun plot` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.cli.options import (
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    STEP,
+    TIME_LIMIT,
+    TOLERANCE,
+    Option,
+)
+from heuncli.named_tuples import NamedTuple
+
+
+class PlotRequest(NamedTuple):
+    """Draw loads and motion: over time, along a bar, as a polar diagram; the machine itself; a sweep, modes, orders."""
+
+    words: Annotated[
+        tuple[str, ...],
+        Option(
+            (),
+            "Specs, or the store or CSV of a sweep; then paths such as joints.main.force, sections.NAME, polar "
+            "joints.NAME, scene, modes or balance.",
+            "SPEC... WHAT...",
+        ),
+    ]
+    output: Annotated[
+        str | None,
+        Option(("--output", "-o"), "Draw it there: x.svg; .png and .pdf by matplotlib. Default: in letters.", "FILE"),
+    ] = None
+    x: Annotated[
+        str | None, Option(("--x",), "Over this number instead of time, as coordinates.shaft.angle.", "PATH")
+    ] = None
+    measured: Annotated[
+        tuple[str, ...],
+        Option(("--with",), "Points of a CSV over it: its columns of x and y. May be repeated.", "FILE:X:Y"),
+    ] = ()
+    at: Annotated[str | None, Option(("--at",), "At these instants: of diagrams and scenes.", "T,...")] = None
+    axes: Annotated[
+        str | None, Option(("--axes",), "Polar diagrams in the axes of the one or the other body.", "world|from|to")
+    ] = None
+    view: Annotated[
+        str | None,
+        Option(("--view",), "From where a scene is seen: along x, y, z, or azimuth, elevation [deg].", "x|y|z|A,E"),
+    ] = None
+    tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
+        False
+    )
+    width: Annotated[int | None, Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")] = None
+    units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[
+        str | None, Option(("--case",), "In these load cases, over each other; all: in all.", "NAME,...|all")
+    ] = None
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

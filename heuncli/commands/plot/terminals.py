@@ -1,0 +1,25 @@
+"""A figure for the terminal that is at hand, or for what reads standard output in its place."""
+
+from __future__ import annotations
+
+import sys
+
+from heuncli.cli import terminal
+from heuncli.cli.entry import UsageError
+from heuncli.drawing.figure import Figure
+from heuncli.drawing.letters import drawn, look_of
+from heuncli.errors import Problem
+
+WIDTH = 100  # columns where there is no terminal
+LEAST, MOST = 40, 400
+
+
+def in_letters(figure: Figure, width: int | None) -> str:
+    """The figure as text. Raises UsageError."""
+    if width is not None and not LEAST <= width <= MOST:
+        message = f"--width {width}: expected {LEAST} to {MOST} columns"
+        raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
+    present = terminal.present()
+    columns = width or (terminal.width() - 1 if present else WIDTH)
+    encoding = sys.stdout.encoding if present else None
+    return drawn(figure, look_of(columns, encoding, colours=present and terminal.styled()))

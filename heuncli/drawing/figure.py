@@ -1,0 +1,156 @@
+"""A figure: panels under each other, each with two axes, and in them curves, bands, marks and outlines.
+
+Everything stands in the units of the axes; where it comes to stand in pixels or in the cells of a terminal is told by
+drawing/layout.py and drawing/braille.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+
+
+class Trace(NamedTuple):
+    """A line through points (n,), broken where one is nan; thin: what stands beside a curve that matters more."""
+
+    name: str
+    x: Array
+    y: Array
+    pen: int = 0
+    thin: bool = False
+
+
+class Band(NamedTuple):
+    """What lies between two courses (n,), lightly filled."""
+
+    name: str
+    x: Array
+    low: Array
+    high: Array
+    pen: int = 0
+
+
+class Strokes(NamedTuple):
+    """Short lines that belong together, (n, 2, 2): of each its two ends (x, y). Hatches, ordinates, symbols."""
+
+    ends: Array
+    pen: int | None = None
+    width: float = 0.7
+
+
+class Polygon(NamedTuple):
+    """A closed line through corners (n, 2), filled lightly or not at all."""
+
+    name: str
+    corners: Array
+    pen: int | None = None
+    filled: bool = False
+
+
+class Arrow(NamedTuple):
+    """An arrow, to scale, from a place by so much; name: what stands at its tip."""
+
+    x: float
+    y: float
+    by_x: float
+    by_y: float
+    pen: int | None = None
+    name: str = ""
+
+
+class Spot(NamedTuple):
+    """A marked place with its words; shape: one of drawing/picture.py."""
+
+    x: float
+    y: float
+    text: str = ""
+    pen: int | None = None
+    shape: str = "circle"
+    filled: bool = False
+
+
+class Upright(NamedTuple):
+    """A vertical mark across a panel: an event, a blow, a jump, and its words."""
+
+    x: float
+    text: str
+
+
+class Blank(NamedTuple):
+    """A stretch along x of which nothing is claimed: hatched and empty, and why."""
+
+    low: float
+    high: float
+    text: str
+
+
+class Bars(NamedTuple):
+    """A bar from zero at each place (n,)."""
+
+    name: str
+    x: Array
+    y: Array
+    pen: int = 0
+
+
+class Cells(NamedTuple):
+    """A field: values (n_y, n_x) in cells with edges (n_x + 1,) and (n_y + 1,); nan is left empty, what is the unit.
+
+    level: of lines of the same value, at which values they are drawn.
+    """
+
+    name: str
+    x_edges: Array
+    y_edges: Array
+    values: Array
+
+
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Upright | Blank | Bars | Cells
+
+
+class Scaling(NamedTuple):
+    """An axis: what it tells, with its unit, and its ends; named: places that have names in place of numbers."""
+
+    label: str
+    low: float
+    high: float
+    logarithmic: bool = False
+    named: tuple[tuple[float, str], ...] = ()
+
+    def at(self, value: float) -> float:
+        """Where a value stands, 0 to 1; beyond the ends beyond these."""
+        if self.logarithmic:
+            from math import log
+
+            return (log(value) - log(self.low)) / (log(self.high) - log(self.low))
+        return (value - self.low) / (self.high - self.low)
+
+
+class Panel(NamedTuple):
+    """Axes with what stands in them, the first beneath the others; equal: one unit is as long on both axes.
+
+    height [pixels]; of equal axes the most. bare: without axes, as a view of a machine.
+    """
+
+    x: Scaling
+    y: Scaling
+    items: tuple[Item, ...]
+    height: float = 170.0
+    equal: bool = False
+    bare: bool = False
+    title: str = ""
+
+
+class Figure(NamedTuple):
+    """Panels under each other, a title, what it is of in sentences, and notes below.
+
+    legend: names of pens, with whether they are thin, in their order.
+    """
+
+    title: str
+    words: Sequence[str]
+    panels: Sequence[Panel]
+    legend: Sequence[tuple[str, int]] = ()
+    notes: Sequence[str] = ()

@@ -1,0 +1,330 @@
+"""A figure laid out in pixels: what becomes of its panels, axes and items as shapes of a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from heuncli.drawing.figure import (
+    Arrow,
+    Band,
+    Bars,
+    Blank,
+    Cells,
+    Figure,
+    Item,
+    Panel,
+    Polygon,
+    Scaling,
+    Spot,
+    Strokes,
+    Trace,
+    Upright,
+)
+from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, pen
+from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
+from heuncli.drawing.shades import shade
+from heuncli.drawing.ticks import ticks
+from heuncli.foreign_text import shown
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+from heuncli.wrapping import wrapped
+
+WIDTH = 820.0  # pixels
+LEFT, RIGHT, TOP = 86.0, 26.0, 26.0
+UNDER, BETWEEN = 44.0, 20.0  # below a panel with the name of its axis, and between panels
+TITLE, NAME, SMALL = 17.0, 12.0, 11.0  # sizes of letters
+LINE = 16.0  # from one line of text to the next
+LETTER = 0.56  # of the size of letters: their mean width in a sentence
+PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # pixels at least
+HEAD = 8.0  # the head of an arrow
+HATCH = 9.0  # between the lines of a hatch
+NEAR = 4.0  # from a mark to its words
+FINE = 0.1  # pixels: what a point of a curve may lie off the line that is drawn
+
+
+class Box(NamedTuple):
+    """The field of a panel in pixels, and its scales."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    across: Scaling
+    up: Scaling
+
+    def x(self, value: float) -> float:
+        """Where a place along the axis across stands."""
+        return self.left + self.across.at(value) * (self.right - self.left)
+
+    def y(self, value: float) -> float:
+        """Where a place along the axis upwards stands."""
+        return self.bottom - self.up.at(value) * (self.bottom - self.top)
+
+    def points(self, x: Array, y: Array) -> Array:
+        """Where points stand, (n, 2)."""
+        return np.column_stack([_along(self.x, x, self.across), _along(self.y, y, self.up)])
+
+
+def _along(at: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
+    """Many values at once on an axis."""
+    values = np.asarray(values, dtype=np.float64)
+    if scaling.logarithmic:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            values = np.log(values)
+        low, high = math.log(scaling.low), math.log(scaling.high)
+    else:
+        low, high = scaling.low, scaling.high
+    first, last = at(scaling.low), at(scaling.high)
+    return np.asarray(first + (values - low) / (high - low) * (last - first))
+
+
+def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
+    """The picture of a figure."""
+    shapes, y = _heading(figure, width)
+    shapes += (legend := _legend(figure, y, width))[0]
+    y = legend[1]
+    for panel in figure.panels:
+        y += LINE + 4.0 if panel.title else 6.0
+        box = _box(panel, y, width)
+        if panel.title:
+            shapes.append(Text(box.left, y - 6.0, shown(panel.title), NAME, bold=True))
+        shapes += _panel(panel, box)
+        y = box.bottom + (UNDER if panel.x.label else BETWEEN)
+    for note in figure.notes:
+        for text in _wrapped(note, SMALL, width):
+            shapes.append(Text(20.0, y + 4.0, text, SMALL, colour=GREY))
+            y += LINE
+    words = "; ".join(map(shown, figure.words))
+    return Picture(width, y + 8.0, shown(figure.title), words, shapes)
+
+
+def _heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
+    """The title and what the figure is of, and the height below."""
+    shapes: list[Shape] = []
+    y = TOP
+    for text in _wrapped(figure.title, TITLE, width):
+        shapes.append(Text(20.0, y, text, TITLE, bold=True))
+        y += 21.0
+    for sentence in figure.words:
+        for text in _wrapped(sentence, SMALL, width):
+            shapes.append(Text(20.0, y, text, SMALL, colour=GREY))
+            y += LINE
+    return shapes, y
+
+
+def _wrapped(text: str, size: float, width: float) -> list[str]:
+    """A text in lines that fit."""
+    return wrapped(shown(text), int((width - 40.0) / (LETTER * size)), 0)
+
+
+def _legend(figure: Figure, y: float, width: float) -> tuple[list[Shape], float]:
+    """A stroke of each pen with its name, as many in a line as fit, and the height below."""
+    shapes: list[Shape] = []
+    if not figure.legend:
+        return shapes, y
+    x, y = 20.0, y + 4.0
+    for name, number in figure.legend:
+        text = shown(name)
+        room = 34.0 + LETTER * NAME * len(text) + 18.0
+        if x > 20.0 and x + room > width - 20.0:
+            x, y = 20.0, y + LINE
+        own = pen(number)
+        shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), own.colour, 2.0, own.dash))
+        shapes.append(Text(x + 34.0, y, text, NAME))
+        x += room
+    return shapes, y + 8.0
+
+
+def _box(panel: Panel, top: float, width: float) -> Box:
+    """The field of a panel below a height; of equal axes as wide as its unit is high, in the middle."""
+    left, right, height = LEFT, width - RIGHT, panel.height
+    if panel.equal:
+        across, up = panel.x.high - panel.x.low, panel.y.high - panel.y.low
+        scale = min((right - left) / across, height / up)
+        middle = (left + right) / 2.0
+        left, right, height = middle - scale * across / 2.0, middle + scale * across / 2.0, scale * up
+    return Box(left, top, right, top + height, panel.x, panel.y)
+
+
+def _panel(panel: Panel, box: Box) -> list[Shape]:
+    """The axes and items of a panel, what is filled first, words last."""
+    drawn = [shape for item in panel.items for shape in _shapes(item, box)]
+    order = {Area: 0, Line: 1, Mark: 2, Text: 3}
+    drawn.sort(key=lambda shape: order[type(shape)])
+    filled = [shape for shape in drawn if isinstance(shape, Area)]
+    return [*filled, *([] if panel.bare else _axes(box)), *drawn[len(filled) :]]
+
+
+def _axes(box: Box) -> Iterator[Shape]:
+    """The grid with its numbers, the zero lines, the frame, and what the axes tell."""
+    most = max(2, int((box.right - box.left) / PER_TICK_X)), max(2, int((box.bottom - box.top) / PER_TICK_Y))
+    for value, text in ticks(box.across, most[0]):
+        x = box.x(value)
+        yield Line(((x, box.top), (x, box.bottom)), GREY if _is_zero(value, box.across) else FAINT, 0.8)
+        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), BLACK, 0.8)
+        if box.across.label:
+            yield Text(x, box.bottom + 16.0, shown(text), SMALL, "middle")
+    for value, text in ticks(box.up, most[1]):
+        y = box.y(value)
+        yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
+        yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
+    corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
+    yield Line((*corners, corners[0]), BLACK, 1.0)
+    if box.across.label:
+        yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
+    if box.up.label:
+        middle = (box.top + box.bottom) / 2.0
+        yield Text(max(box.left - 64.0, 16.0), middle, shown(box.up.label), NAME, "middle", turned=True)
+
+
+def _is_zero(value: float, scaling: Scaling) -> bool:
+    return value == 0.0 and not scaling.logarithmic
+
+
+def _shapes(item: Item, box: Box) -> Iterator[Shape]:
+    """What an item is drawn with."""
+    draw: Callable[[Any, Box], Iterator[Shape]] = DRAWN[type(item)]
+    return draw(item, box)
+
+
+def _trace(item: Trace, box: Box) -> Iterator[Shape]:
+    own = pen(item.pen)
+    for part in pieces(box.points(item.x, item.y)):
+        line = tuple(map(tuple, thinned(part).tolist()))
+        yield Line(line, own.colour, 0.9 if item.thin else 1.8, own.dash, shown(item.name))
+
+
+def _band(item: Band, box: Box) -> Iterator[Shape]:
+    low, high = box.points(item.x, item.low), box.points(item.x, item.high)
+    for part in pieces(np.hstack([low, high])):
+        around = np.concatenate([thinned(part[:, :2]), thinned(part[:, 2:])[::-1]])
+        yield Area(tuple(map(tuple, around.tolist())), pen(item.pen).colour, 0.2, shown(item.name))
+
+
+def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
+    colour = GREY if item.pen is None else pen(item.pen).colour
+    for (x0, y0), (x1, y1) in item.ends.tolist():
+        yield Line(((box.x(x0), box.y(y0)), (box.x(x1), box.y(y1))), colour, item.width)
+
+
+def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
+    colour = BLACK if item.pen is None else pen(item.pen).colour
+    corners = tuple(map(tuple, box.points(*item.corners.T).tolist()))
+    if item.filled:
+        yield Area(corners, colour, 0.12, shown(item.name))
+    yield Line((*corners, corners[0]), colour, 1.0, name=shown(item.name))
+
+
+def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
+    colour = BLACK if item.pen is None else pen(item.pen).colour
+    x0, y0 = box.x(item.x), box.y(item.y)
+    x1, y1 = box.x(item.x + item.by_x), box.y(item.y + item.by_y)
+    length = math.hypot(x1 - x0, y1 - y0)
+    if not length > 0.0:
+        return
+    a, b = (x1 - x0) / length, (y1 - y0) / length
+    head = min(HEAD, 0.6 * length)
+    back = x1 - head * a, y1 - head * b
+    yield Line(((x0, y0), back), colour, 1.6, name=shown(item.name))
+    side = 0.4 * head
+    yield Area(
+        ((x1, y1), (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)), colour, 1.0
+    )
+    if item.name:
+        yield Text(x1 + 5.0 * a, y1 + 5.0 * b + 4.0, shown(item.name), SMALL, "end" if a < 0.0 else "start", colour)
+
+
+def _spot(item: Spot, box: Box) -> Iterator[Shape]:
+    x, y = box.x(item.x), box.y(item.y)
+    colour = BLACK if item.pen is None else pen(item.pen).colour
+    yield Mark(x, y, item.shape, colour, item.filled, 3.2)
+    if item.text:
+        text = shown(item.text)
+        room = LETTER * SMALL * len(text)
+        right = x + NEAR + 3.0 + room <= box.right
+        up = -NEAR - 2.0 if y - SMALL - 6.0 > box.top else SMALL + 5.0
+        yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
+
+
+def _upright(item: Upright, box: Box) -> Iterator[Shape]:
+    x = box.x(item.x)
+    yield Line(((x, box.top), (x, box.bottom)), GREY, 1.0, (3.0, 3.0), shown(item.text))
+    if item.text:
+        yield Text(x - 3.0, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
+
+
+def _blank(item: Blank, box: Box) -> Iterator[Shape]:
+    left, right = box.x(item.low), box.x(item.high)
+    yield Area(
+        ((left, box.top), (right, box.top), (right, box.bottom), (left, box.bottom)), "#ffffff", 1.0, shown(item.text)
+    )
+    height = box.bottom - box.top
+    first = math.ceil((left - height) / HATCH)
+    for k in range(first, math.floor(right / HATCH) + 1):
+        x = k * HATCH  # a line that rises to the right from the bottom at x
+        low, high = max(left, x), min(right, x + height)
+        if low < high:
+            yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
+    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY)
+
+
+def _bars(item: Bars, box: Box) -> Iterator[Shape]:
+    own, zero = pen(item.pen), box.y(0.0)
+    step = float(np.diff(item.x).min()) if len(item.x) > 1 else 1.0
+    half = min(0.3 * abs(box.x(step) - box.x(0.0)), 15.0)
+    for x, y in box.points(item.x, item.y).tolist():
+        yield Area(
+            ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero)), own.colour, 0.85, shown(item.name)
+        )
+
+
+def _cells(item: Cells, box: Box) -> Iterator[Shape]:
+    xs, ys = (
+        box.points(item.x_edges, np.full(len(item.x_edges), box.up.low))[:, 0],
+        box.points(np.full(len(item.y_edges), box.across.low), item.y_edges)[:, 1],
+    )
+    known = item.values[np.isfinite(item.values)]
+    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    for j, row in enumerate(item.values.tolist()):
+        for i, value in enumerate(row):
+            if math.isfinite(value):
+                share = (value - low) / (high - low) if high > low else 0.5
+                corners = ((xs[i], ys[j]), (xs[i + 1], ys[j]), (xs[i + 1], ys[j + 1]), (xs[i], ys[j + 1]))
+                yield Area(tuple((float(a), float(b)) for a, b in corners), shade(share), 1.0)
+
+
+DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
+    Blank: _blank, Bars: _bars, Cells: _cells,
+}  # fmt: skip
+
+
+def pieces(points: Array) -> list[Array]:
+    """The stretches of a course (n, m) between what is not known; single points are none."""
+    known = np.isfinite(points).all(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
+    return [points[a:b] for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > 1]
+
+
+def thinned(points: Array) -> Array:
+    """Without the points (n, 2) that lie on the line between their neighbours (Douglas and Peucker, 1973)."""
+    keep = np.zeros(len(points), dtype=bool)
+    keep[[0, -1]] = True
+    stack = [(0, len(points) - 1)]
+    while stack:
+        a, b = stack.pop()
+        if b - a < 2:
+            continue
+        first, along = points[a], points[b] - points[a]
+        length = math.hypot(*along)
+        inner = points[a + 1 : b] - first
+        off = np.abs(inner[:, 0] * along[1] - inner[:, 1] * along[0]) / length if length else np.hypot(*inner.T)
+        k = int(np.argmax(off))
+        if off[k] > FINE:
+            keep[a + 1 + k] = True
+            stack += [(a, a + 1 + k), (a + 1 + k, b)]
+    return points[keep]

@@ -1,0 +1,36 @@
+"""With what curves are drawn: colours that the colour-blind tell apart (Okabe and Ito, 2008), dashes beside them.
+
+The colours are dark enough on white; with the dashes and letters a picture can be read in black and white, too.
+"""
+
+from __future__ import annotations
+
+from heuncli.named_tuples import NamedTuple
+
+BLACK, GREY, FAINT, GRID = "#000000", "#444444", "#e2e2e2", "#c4c4c4"
+
+
+class Pen(NamedTuple):
+    """A colour, a dash (lengths of strokes and gaps [pixels]), the letter in its place, and the code of terminals."""
+
+    colour: str
+    dash: tuple[float, ...]
+    letter: str
+    code: str
+
+
+PENS = (
+    Pen("#0072b2", (), "a", "34"),
+    Pen("#d55e00", (7.0, 3.0), "b", "31"),
+    Pen("#007a5a", (2.0, 2.5), "c", "32"),
+    Pen("#aa3377", (9.0, 3.0, 2.0, 3.0), "d", "35"),
+    Pen("#8a6d00", (4.0, 2.0), "e", "33"),
+    Pen("#000000", (12.0, 4.0), "f", "39"),
+    Pen("#2a9fd6", (12.0, 3.0, 2.0, 3.0, 2.0, 3.0), "g", "36"),
+    Pen("#666666", (1.5, 3.0), "h", "90"),
+)
+
+
+def pen(number: int) -> Pen:
+    """The pen of a number; beyond the last they begin anew."""
+    return PENS[number % len(PENS)]

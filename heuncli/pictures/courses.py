@@ -1,0 +1,85 @@
+"""One number over the instants of a run, as a curve: close enough that no bend is lost, broken where it is not known.
+
+Between two asked instants a motion may turn many times. A course has the asked instants, those at which the search for
+extremes looks, both sides of every jump, and where these are few more between them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.study.ask.curves import numbers_at
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak
+from heuncli.study.ask.study import Study
+from heuncli.study.search.extremes import distinct, sides_of_jumps
+from heuncli.variants.stated import error_of, unit_of
+
+ENOUGH = 400  # instants of a curve: two a pixel of a panel, nearly
+JUMP = 0.01  # of the span of a course: a jump that is drawn as one
+MOST = 4000  # of the instants at which extremes are looked for, as many as a picture can show
+
+
+@record
+class Pictured:
+    """A solved scene in a picture, and how it is called there: its file and case; nothing where it is the only one."""
+
+    name: str
+    study: Study
+
+
+class Course(NamedTuple):
+    """A number over some instants (n,): its path, its SI unit, its stated error, its lowest and highest."""
+
+    path: str
+    unit: str
+    times: Array
+    values: Array
+    error: float | None
+    low: Peak
+    high: Peak
+
+
+def instants(study: Study) -> Array:
+    """The instants of curves, (n,) ascending, up to the horizon."""
+    results = study.results
+    times = results.time
+    if study.of_one_instant:
+        return times
+    looked_at = study.search_times
+    if len(looked_at) > MOST:
+        jumps = np.flatnonzero(sides_of_jumps(looked_at))
+        some = np.linspace(0, len(looked_at) - 1, MOST).round().astype(np.intp)
+        looked_at = looked_at[distinct(np.concatenate([some, jumps, jumps + 1]))]
+    even = np.linspace(times[0], times[-1], ENOUGH)
+    found = distinct(np.concatenate([times, looked_at, even]))
+    horizon = results.accuracy.get("horizon")
+    return np.asarray(found if horizon is None else found[found < horizon])
+
+
+def jumps_of(course: Course) -> Array:
+    """The instants at which a course jumps by what is seen: its values on the two sides of one differ."""
+    step = np.abs(np.diff(course.values))
+    seen = step > JUMP * (course.high.value - course.low.value)
+    return np.asarray(course.times[:-1][sides_of_jumps(course.times) & seen])
+
+
+def course_of(study: Study, path: str, times: Array) -> Course:
+    """The course of a number, of a vector its magnitude. Raises NotOneNumber, SpecError [unknown-path]."""
+    numbers = study.numbers(path)
+    if not numbers.timed:
+        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+    low, high = (peak(study, path, how) for how in ("min", "max"))
+    values = values_at(study, path, times)
+    error = error_of(MeasureRequest("abs", path), high, study)
+    return Course(path, unit_of(path, study.spec), times, values, error, low, high)
+
+
+def values_at(study: Study, path: str, times: Array) -> Array:
+    """The number at a path at some instants, (n,); of a vector its magnitude."""
+    if not study.numbers(path).of_vectors:
+        return numbers_at(study, path, times)
+    parts = [numbers_at(study, f"{path}.{axis}", times) for axis in "xyz"]
+    return np.asarray(np.sqrt(sum(part * part for part in parts)))

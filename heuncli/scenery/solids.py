@@ -1,0 +1,116 @@
+"""The surfaces of shapes as polygons, in body axes: round ones in so many flat faces."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+from heuncli.spec.models import Shape, Vec
+
+ROUND = 24  # faces about an axis
+FLOORS = 12  # of a sphere, from pole to pole
+THIN = 0.015  # radius of a rod that has none, of its length
+
+
+class Surface(NamedTuple):
+    """Faces over corners (n, 3), each a tuple of their numbers, counter-clockwise from outside; and edges to be drawn.
+
+    edges: polylines (k, 3): the rims and ridges by which the shape is known.
+    """
+
+    corners: Array
+    faces: tuple[tuple[int, ...], ...]
+    edges: tuple[Array, ...]
+
+
+def surfaces_of(shape: Shape) -> tuple[Surface, ...]:
+    """The surfaces of a shape; a point mass has none."""
+    if shape.type == "point":
+        return ()
+    if shape.type == "box":
+        return (_box(shape),)
+    if shape.type == "sphere":
+        return (_sphere(_vector(shape.center), shape.radius or 0.0),)
+    start, end = _vector(shape.from_), _vector(shape.to)
+    if shape.type == "rod":
+        radius = THIN * float(np.linalg.norm(end - start))
+        return (_revolved(start, end, radius, radius, 0.0),)
+    first = shape.radius or 0.0
+    last = first if shape.to_radius is None else shape.to_radius
+    return (_revolved(start, end, first, last, shape.inner_radius or 0.0),)
+
+
+def _vector(vector: Vec | None) -> Array:
+    return np.array(vector, dtype=np.float64)
+
+
+def _box(shape: Shape) -> Surface:
+    """Six faces and twelve edges."""
+    axes = np.eye(3) if shape.rotation is None else np.array(shape.rotation, dtype=np.float64)
+    signs = np.array([[(k & 1) * 2 - 1, (k & 2) - 1, ((k & 4) >> 1) - 1] for k in range(8)], dtype=np.float64)
+    corners = _vector(shape.center) + (signs * 0.5 * _vector(shape.size)) @ axes.T
+    faces = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))
+    edges = tuple(corners[[a, b]] for a in range(8) for b in range(a + 1, 8) if (a ^ b) in (1, 2, 4))
+    return Surface(corners, faces, edges)
+
+
+def across(direction: Array) -> tuple[Array, Array]:
+    """Two directions of unit length across a unit direction, right-handed with it."""
+    least = np.eye(3)[int(np.argmin(np.abs(direction)))]
+    first = np.cross(direction, least)
+    first /= np.linalg.norm(first)
+    return first, np.cross(direction, first)
+
+
+def circle(centre: Array, direction: Array, radius: float, count: int = ROUND) -> Array:
+    """Points (count, 3) of a circle, counter-clockwise about the direction."""
+    u, v = across(direction)
+    angle = 2.0 * np.pi * np.arange(count) / count
+    return np.asarray(centre + radius * (np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v))
+
+
+def _revolved(start: Array, end: Array, first: float, last: float, inner: float) -> Surface:
+    """A cylinder, cone or tube: its wall in flat faces, its ends, its rims and two lines along it."""
+    axis = (end - start) / np.linalg.norm(end - start)
+    low, high = circle(start, axis, first), circle(end, axis, last)
+    corners, n = [low, high], ROUND
+    faces: list[tuple[int, ...]] = []
+    for k in range(n):
+        j = (k + 1) % n
+        faces.append((k, j, n + j, n + k))
+    edges = [_closed(low), _closed(high), np.array([low[0], high[0]]), np.array([low[n // 2], high[n // 2]])]
+    if inner > 0.0:
+        inner_low, inner_high = circle(start, axis, inner), circle(end, axis, inner)
+        corners += [inner_low, inner_high]
+        for k in range(n):
+            j = (k + 1) % n
+            faces.append((2 * n + j, 2 * n + k, 3 * n + k, 3 * n + j))
+            faces += [(j, k, 2 * n + k, 2 * n + j), (n + k, n + j, 3 * n + j, 3 * n + k)]
+        edges += [_closed(inner_low), _closed(inner_high)]
+    else:
+        faces += [tuple(reversed(range(n))), tuple(range(n, 2 * n))]
+    return Surface(np.concatenate(corners), tuple(faces), tuple(edges))
+
+
+def _sphere(centre: Array, radius: float) -> Surface:
+    """Rings from pole to pole; three great circles as its edges."""
+    axis = np.array([0.0, 0.0, 1.0])
+    levels = np.pi * np.arange(1, FLOORS) / FLOORS
+    rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a)) for a in levels]
+    corners = np.concatenate([*rings, [centre - radius * axis, centre + radius * axis]])
+    n, m = ROUND, len(rings)
+    faces: list[tuple[int, ...]] = []
+    for i in range(m - 1):
+        for k in range(n):
+            j = (k + 1) % n
+            faces.append((i * n + k, i * n + j, (i + 1) * n + j, (i + 1) * n + k))
+    for k in range(n):
+        j = (k + 1) % n
+        faces += [(m * n, j, k), (m * n + 1, (m - 1) * n + k, (m - 1) * n + j)]
+    edges = tuple(_closed(circle(centre, direction, radius)) for direction in np.eye(3))
+    return Surface(corners, tuple(faces), edges)
+
+
+def _closed(ring: Array) -> Array:
+    return np.concatenate([ring, ring[:1]])
