@@ -33,7 +33,7 @@ Node = dict[str, Any]
 
 def binary(machine: Machine, poses: Poses, up: Array) -> bytes:
     """The file: the machine in its poses, (3,) the unit direction that is up in the world."""
-    file = _File()
+    file = _Binary()
     kept = _instants(poses.times)
     times = file.numbers((poses.times[kept] - poses.times[0])[:, None], ends=True) if len(kept) > 1 else None
     bodies = [_body(file, k, body, poses, kept, times) for k, body in enumerate(machine.bodies)]
@@ -54,7 +54,7 @@ def _instants(times: Array) -> Array:
     return np.asarray(np.flatnonzero(np.diff(single, prepend=-1.0) > 0.0))
 
 
-def _body(file: _File, number: int, body: BodyLook, poses: Poses, kept: Array, times: int | None) -> int:
+def _body(file: _Binary, number: int, body: BodyLook, poses: Poses, kept: Array, times: int | None) -> int:
     """The node of a body, moved over the times; times: the number of their accessor, None where nothing moves."""
     places, turns = poses.places[body.name][kept], _xyzw(_continued(poses.turns[body.name][kept]))
     children = _points(file, body.name, body.points)
@@ -67,7 +67,7 @@ def _body(file: _File, number: int, body: BodyLook, poses: Poses, kept: Array, t
     return node
 
 
-def _mesh(file: _File, number: int, body: BodyLook) -> int:
+def _mesh(file: _Binary, number: int, body: BodyLook) -> int:
     """The mesh of a body: a part a shape or line, in the body's colour."""
     colour = bytes.fromhex(pen(number).colour.lstrip("#"))
     linear = [_linear(part / 255.0) for part in colour]
@@ -84,7 +84,7 @@ def _mesh(file: _File, number: int, body: BodyLook) -> int:
     return len(file.meshes) - 1
 
 
-def _points(file: _File, body: str, points: Mapping[str, Array]) -> list[int]:
+def _points(file: _Binary, body: str, points: Mapping[str, Array]) -> list[int]:
     """A node for each named point of a body, for what is to be hung on it."""
     return [file.node(f"{body}.{name}", translation=point) for name, point in points.items()]
 
@@ -105,7 +105,7 @@ def _xyzw(quaternion: Array) -> Array:
     return np.roll(quaternion, -1, axis=-1)
 
 
-class _File:
+class _Binary:
     """What a file has so far; impure: it grows. Of nodes, meshes, materials and accessors others know the numbers."""
 
     def __init__(self) -> None:
