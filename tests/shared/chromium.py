@@ -245,12 +245,11 @@ class Tab:
 
     def drag(self, *places: tuple[float, float], shift: bool = False) -> None:
         """Hold the mouse down at the first place [pixels of the window], move over the others, let go at the last."""
-        moves = [("mouseMoved", place, 1) for place in places[1:]]
-        events = [("mouseMoved", places[0], 0), ("mousePressed", places[0], 1), *moves, ("mouseReleased", places[-1], 0)]
-        for kind, (x, y), held in events:
-            told = {"x": x, "y": y, "buttons": held, "modifiers": 8 * shift}
-            button = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
-            self.send("Input.dispatchMouseEvent", type=kind, **told, **button)
+        over = [("mouseMoved", place, 1) for place in places[1:]]
+        begun, ended = [("mouseMoved", places[0], 0), ("mousePressed", places[0], 1)], ("mouseReleased", places[-1], 0)
+        for kind, (x, y), held in (*begun, *over, ended):
+            button = {"button": "left", "clickCount": 1} if held or kind == "mouseReleased" else {}
+            self.send("Input.dispatchMouseEvent", type=kind, x=x, y=y, buttons=held, modifiers=8 * shift, **button)
         self.drawn()
 
     def scroll(self, selector: str, turned: float) -> None:
