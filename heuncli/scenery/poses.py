@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.results import Array, Results
 from heuncli.scenery.machine import GROUND
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
@@ -34,7 +34,11 @@ class Poses(NamedTuple):
 
 def poses_of(study: Study, times: Array) -> Poses:
     """The poses at instants of the run, (n,) ascending."""
-    found = study.results if study.of_one_instant else study.reports_at(times, MOTION)
+    return poses_in(study.results if study.of_one_instant else study.reports_at(times, MOTION))
+
+
+def poses_in(found: Results) -> Poses:
+    """The poses that results with motions have."""
     places = {name: body["position"] for name, body in found.bodies.items()}
     attitudes = {name: body["rotation"] for name, body in found.bodies.items()}
     return Poses(found.time, places, attitudes, {name: body["quaternion"] for name, body in found.bodies.items()})

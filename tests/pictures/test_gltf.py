@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from heuncli.scenery.solids import FLOORS, ROUND, THIN
 from heuncli.spec.load import load
 from heuncli.spec.models import Shape, Spec
 from heuncli.study.workflow import solve
+from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 from tests.shared.glb import Glb
 
@@ -149,3 +151,51 @@ def test_bytes_repeat_and_say_when_the_run_begins() -> None:
     content = binary(machine, poses, up)
     assert binary(machine, poses, up) == content
     assert Glb(content).head["extras"] == {"start": poses.times[0]}
+
+
+def test_heun_show_writes_it_beside_the_page_or_alone(heun: Heun, folder: Path) -> None:
+    assert heun("show", "swinging.yaml", "--glb", "alone.glb").returncode == 0
+    assert heun("show", "swinging.yaml", "-o", "page.html", "--glb", "beside.glb").returncode == 0
+    alone = (folder / "alone.glb").read_bytes()
+    assert alone == (folder / "beside.glb").read_bytes()
+    assert (folder / "page.html").exists()
+    glb = Glb(alone)
+    assert glb.courses("bar")["rotation"][0][-1] == 1.0
+    assert heun("show", "hanging.yaml", "--glb", "rest.glb").returncode == 0
+    assert "animations" not in Glb((folder / "rest.glb").read_bytes()).head
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (("--glb", "x.gltf"), "--glb x.gltf: no glTF in one file is known by that ending"),
+        (("--glb", "nowhere/x.glb"), "there is no folder nowhere"),
+        (("-o", "-", "--glb", "/dev/stdout"), "no glTF in one file is known by that ending"),
+        ((), "where the page goes is not said"),
+    ],
+)
+def test_what_cannot_be_written_is_told_before_any_work(heun: Heun, folder: Path, words: list[str], told: str) -> None:
+    before = sorted(folder.iterdir())
+    done = heun("show", "swinging.yaml", *words)
+    assert done.returncode in (2, 5)
+    assert told in done.stderr
+    assert sorted(folder.iterdir()) == before
+
+
+def test_a_spec_or_the_page_is_not_written_over(heun: Heun, folder: Path) -> None:
+    spec = folder / "spec.glb"
+    spec.write_text((folder / "swinging.yaml").read_text())
+    assert "that is the spec itself" in heun("show", "spec.glb", "--glb", "spec.glb").stderr
+    (folder / "page.html").symlink_to(folder / "x.glb")
+    assert "that is where the page goes" in heun("show", "spec.glb", "-o", "page.html", "--glb", "x.glb").stderr
+    assert not (folder / "x.glb").exists()
+
+
+def test_what_turns_too_fast_to_be_followed_is_told(heun: Heun, folder: Path) -> None:
+    """300 turns a second for 40 s are 12,000 turns: no 4,000 instants show them."""
+    text = (folder / "hanging.yaml").read_text().replace("type: ball", "type: pin, axis: [0, 0, 1]")
+    driven = "drives:\n  motor: {joint: pivot, rate: 2000}\nanalysis: {duration: 40, samples: 3}\n"
+    (folder / "fast.yaml").write_text(text + driven)
+    done = heun("show", "fast.yaml", "--glb", "fast.glb")
+    assert done.returncode == 0
+    assert "between two of its instants a body turns up to" in done.stderr
