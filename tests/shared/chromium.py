@@ -91,15 +91,20 @@ class Chromium:
         self._heard, self._number = b"", 0
         self._tabs: dict[str, Tab] = {}
         self._answers: dict[int, dict[str, Any]] = {}
-        self._blank: Tab | None = None
+        (first,) = (told for told in self.send("Target.getTargets")["targetInfos"] if told["type"] == "page")
+        self._blank = self._attached(first["targetId"])
+
+    def _attached(self, target: str) -> Tab:
+        """A page that is there."""
+        session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        return self._tabs.setdefault(session, Tab(self, target, session))
 
     def tab(self, width: int = 1000, height: int = 700, dark: bool = False) -> Tab:
-        """A new empty page."""
-        target = self.send("Target.createTarget", url="about:blank")["targetId"]
-        session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        found = self._tabs[session] = Tab(self, target, session)
+        """A new empty page, before all others: those behind it draw nothing."""
+        found = self._attached(self.send("Target.createTarget", url="about:blank")["targetId"])
         for domain in ("Page", "Runtime", "Log", "Network"):
             found.send(f"{domain}.enable")
+        found.send("Emulation.setFocusEmulationEnabled", enabled=True)
         found.sized(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         found.send("Emulation.setEmulatedMedia", features=[scheme])
@@ -115,7 +120,6 @@ class Chromium:
 
     def seen(self, png: bytes) -> Seen:
         """What is on a screenshot."""
-        self._blank = self._blank or self.tab()
         told = self._blank.evaluate(f"({SEEN})({json.dumps(base64.b64encode(png).decode())})")
         return Seen(told["colours"], told["box"], told["marked"], told["size"], told["corner"], png)
 
@@ -186,14 +190,16 @@ class Tab:
         elif method == "Page.javascriptDialogOpening":
             self.faults.append(f"dialog: {told['message']}")
 
-    def go(self, address: str) -> None:
-        """Open an address and wait until all of it is loaded and drawn."""
+    def go(self, address: str, scripts: bool = True) -> None:
+        """Open an address and wait until all of it is loaded and drawn; scripts: whether the page may run its own."""
         self._loaded = False
+        self.send("Emulation.setScriptExecutionDisabled", value=not scripts)
         self.send("Page.navigate", url=address)
         deadline = time.monotonic() + PATIENCE
         while not self._loaded:
             self.browser.listen(deadline)
-        self.drawn()
+        if scripts:
+            self.drawn()
 
     def sized(self, width: int, height: int) -> None:
         """Give the page a window of a size [pixels], at one device pixel each."""
