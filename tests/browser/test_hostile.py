@@ -35,7 +35,10 @@ INTRUDED = """(() => {
 def spec_with(folder: Path, title: str, stem: str = "spec") -> Path:
     """A small moving spec of a title and a file's name."""
     path = folder / f"{stem}.yaml"
-    text = TURNED.replace("A bar hangs at rest", json.dumps(title)) + "analysis: {duration: 1, samples: 11}\n"
+    text = (
+        TURNED.replace("A bar hangs at rest", json.dumps(title, ensure_ascii=False))
+        + "analysis: {duration: 1, samples: 11}\n"
+    )
     path.write_text(text, encoding="utf-8")
     return path
 

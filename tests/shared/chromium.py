@@ -208,7 +208,8 @@ class Tab:
 
     def evaluate(self, script: str) -> Any:
         """The value of an expression in the page, awaited. Raises RuntimeError with what the script threw."""
-        told = self.send("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True, userGesture=True)
+        how = {"returnByValue": True, "awaitPromise": True, "userGesture": True, "allowUnsafeEvalBlockedByCSP": False}
+        told = self.send("Runtime.evaluate", expression=script, **how)
         if "exceptionDetails" in told:
             details = told["exceptionDetails"]
             raise RuntimeError(details.get("exception", {}).get("description", details["text"]))
