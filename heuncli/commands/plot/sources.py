@@ -20,14 +20,26 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
 
+Named = tuple[str, Spec]  # a spec in a case, and how it is called in a picture
+
 
 def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
     """The runs, in the order of the files and of their cases; what they are warned of is told."""
+    return all_solved(specs_asked(files, paths, request), paths, request)
+
+
+def specs_asked(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Named]:
+    """The specs in their cases, each with its name where there are several. Raises SpecError [unknown-path]."""
     specs = [pair for file in files for pair in _specs(file, request)]
     asked = [MeasureRequest("", path) for path in paths]
     for _, spec in specs:
         measure.check(asked, spec, "heun plot")
-    return [_solved(name if len(specs) > 1 else "", spec, paths, request) for name, spec in specs]
+    return [(name if len(specs) > 1 else "", spec) for name, spec in specs]
+
+
+def all_solved(specs: Sequence[Named], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
+    """The runs of specs; what they are warned of is told."""
+    return [_solved(name, spec, paths, request) for name, spec in specs]
 
 
 def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
