@@ -63,7 +63,7 @@ def counted_without_loads(layout: Layout, drives: tuple[Expression, ...], holdin
 def counted(runner: Evaluator) -> Redundancy:
     """Count what is held twice in a scene with closed chains."""
     from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
-    from heuncli.redundancy.self_stress import KnownStress, stress_poses, self_stress, stress_of
+    from heuncli.redundancy.self_stress import KnownStress, self_stress, stress_of, stress_poses
 
     layout = runner.layout
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
