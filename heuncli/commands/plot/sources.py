@@ -20,26 +20,20 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
 
-Named = tuple[str, Spec]  # a spec in a case, and how it is called in a picture
-
 
 def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
     """The runs, in the order of the files and of their cases; what they are warned of is told."""
-    return all_solved(specs_asked(files, paths, request), paths, request)
-
-
-def specs_asked(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Named]:
-    """The specs in their cases, each with its name where there are several. Raises SpecError [unknown-path]."""
-    specs = [pair for file in files for pair in _specs(file, request)]
+    specs = specs_of(files, request)
     asked = [MeasureRequest("", path) for path in paths]
     for _, spec in specs:
         measure.check(asked, spec, "heun plot")
-    return [(name if len(specs) > 1 else "", spec) for name, spec in specs]
+    return [solution(name, spec, paths, request) for name, spec in specs]
 
 
-def all_solved(specs: Sequence[Named], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
-    """The runs of specs; what they are warned of is told."""
-    return [_solved(name, spec, paths, request) for name, spec in specs]
+def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
+    """The specs, in the order of the files and of their cases, each with its name; of one alone that is empty."""
+    specs = [pair for file in files for pair in _specs(file, request)]
+    return specs if len(specs) > 1 else [("", spec) for _, spec in specs]
 
 
 def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
@@ -56,8 +50,8 @@ def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     require_other_file(request.output, [file])
 
 
-def _solved(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
-    """One of them solved."""
+def solution(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
+    """A spec solved for what some paths need; what it is warned of is told."""
     what = asked_by(paths, spec)
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
     options = replace(
