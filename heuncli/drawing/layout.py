@@ -65,7 +65,9 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
         shapes += drawn
         told += without_words
         y = box.bottom + (UNDER if panel.x.label else BETWEEN)
-    for note in (*figure.notes, *left_out(told)):
+    notes = [*figure.notes, *left_out(told)]
+    y += 6.0 if notes else 0.0
+    for note in notes:
         for text in _wrapped(note, SMALL, width):
             shapes.append(Text(20.0, y + 4.0, text, SMALL, colour=GREY))
             y += LINE
@@ -245,7 +247,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
         low, high = max(left, x), min(right, x + height)
         if low < high:
             yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
-    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY)
+    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY, halo=True)
 
 
 def _bars(item: Bars, box: Box) -> Iterator[Shape]:

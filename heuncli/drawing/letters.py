@@ -32,6 +32,7 @@ from heuncli.drawing.figure import (
 from heuncli.drawing.pens import pen
 from heuncli.drawing.room import Field, WordBox, columns_of, left_out
 from heuncli.drawing.ticks import ticks
+from heuncli.drawing.words import in_turn
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -49,6 +50,7 @@ PLAIN_SHADES = " .:*#"
 RESET = "\x1b[0m"
 NOBODY, SEVERAL = -1, -2  # in place of a pen: what is of no curve, and of more than one
 LETTERS = 3  # of its pen along a curve
+ZERO = 4  # columns from dot to dot of the line at zero
 UPPER = 3  # rows in which the words of vertical marks stand
 
 
@@ -133,9 +135,9 @@ class Canvas:
         """Words in one of the upper rows, at the right or left of a column; whether there is room."""
         wide = columns_of(text)
         found = self.room.best(
-            (2.0 * row, WordBox(left, row, left + wide, row + 1))
+            (2.0 * row, WordBox(left, row, left + wide + 1, row + 1))  # and a blank behind it
             for row in range(min(UPPER, self.rows))
-            for left in (column + 1, column - wide)
+            for left in (column + 1, column - wide - 1)
         )
         if found is not None:
             self._put(text, found, NOBODY)
@@ -230,6 +232,8 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
         unit = min(room / across, ASPECT * rows / up)  # columns a unit
         columns, rows = max(2, round(unit * across)), max(2, round(unit * up / ASPECT))
     canvas = Canvas(columns, rows, panel.x, panel.y, look)
+    if not panel.bare and panel.y.low < 0.0 < panel.y.high and not panel.y.named:
+        canvas.line(0.0, canvas.y(0.0), columns * canvas.per_x - 1.0, canvas.y(0.0), NOBODY, ZERO * canvas.per_x)
     for item in panel.items:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
@@ -253,8 +257,8 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
 def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
     """The words of spots and vertical marks where they find room; what is told of the others."""
     told: list[str] = []
-    for item in items:
-        if isinstance(item, Upright | Spot) and item.text:
+    for item in in_turn(items):
+        if item.text:
             column = round(canvas.x(item.x)) // canvas.per_x
             if isinstance(item, Upright):
                 has_room = canvas.along(shown(item.text), column)

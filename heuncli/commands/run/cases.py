@@ -6,11 +6,10 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from heuncli.cli.entry import UsageError, worst
+from heuncli.cli.entry import worst
 from heuncli.cli.output import emit
 from heuncli.cli.units import TABLES, say_what_stays
 from heuncli.commands.run.scene import RunTask, leave, solved
-from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
@@ -52,9 +51,7 @@ class Enveloped(NamedTuple):
 
 def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     """Solve every case and tell of them; returns the exit code."""
-    if not cases:
-        hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
-        raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
+    require_cases(cases)
     told: dict[str, str] = {}
     runs: dict[str, KeptRun] = {}
     codes = [0]
