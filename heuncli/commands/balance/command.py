@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from heuncli.balancing.study import balance
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
@@ -11,7 +12,6 @@ from heuncli.cli.target import format_of
 from heuncli.commands.balance import page as report
 from heuncli.commands.balance.options import options
 from heuncli.commands.balance.request import BalanceRequest
-from heuncli.commands.balance.study import balance
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 

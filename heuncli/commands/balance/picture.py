@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from heuncli.commands.balance.page import unit_of
-from heuncli.commands.balance.results import BalanceResults
+from heuncli.balancing.results import BalanceResults
+from heuncli.balancing.words import unit_of
 from heuncli.drawing.picture import Line, Picture, Shape, Text
 from heuncli.foreign_text import shown
 from heuncli.wrapping import wrapped

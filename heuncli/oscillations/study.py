@@ -12,7 +12,6 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.modes.rest_digits import as_known
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.linearisation.modes import SceneModes, most, shape_of
@@ -20,6 +19,7 @@ from heuncli.linearisation.oscillations import oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smoothness import without_slope
 from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.oscillations.rest_digits import as_known
 from heuncli.records import replace
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.rest.steady_states import is_steady
