@@ -12,11 +12,11 @@ from heuncli.cli.units import say_what_stays
 from heuncli.commands.sweep.request import SweepRequest
 from heuncli.commands.sweep.running import exit_code
 from heuncli.commands.sweep.shards import shard_of
-from heuncli.commands.sweep.store.store import StoredSweep, opened
 from heuncli.commands.sweep.telling.noticed import noticed_in, say_noticed
 from heuncli.commands.sweep.telling.told import Telling, tell
 from heuncli.errors import Problem
 from heuncli.foreign_text import shown
+from heuncli.sweeps.store.store import StoredSweep, opened
 
 ALONE = (
     "words", "measure", "variants", "store", "set", "jobs", "time_limit_each", "method", "step", "tolerance", "zip",
