@@ -38,7 +38,8 @@ def plane_seen_along(letter: str) -> Plane:
     """The plane across a world axis: of the two others the first to the right."""
     k = LETTERS.index(letter)
     i, j = (m for m in range(3) if m != k)
-    return Plane(*np.eye(3)[[i, j, k]], (LETTERS[i], LETTERS[j]))
+    e = np.eye(3)
+    return Plane(e[i], e[j], e[k], (LETTERS[i], LETTERS[j]))
 
 
 def plane_across(axis: Array) -> Plane:

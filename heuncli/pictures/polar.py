@@ -284,9 +284,8 @@ def _notes(curve: Curve, largest: Largest | None, units: Units) -> Iterator[str]
         angle = float(np.interp(largest.at, curve.turning.times, curve.turning.counted))
         whole = 360.0 * curve.turning.turns
         when += f", {curve.turning.path} = {angle % whole if whole else angle:.4g}°"
-    yield (
-        f"{curve.name}: largest {size * largest.size:.6g} {unit} towards {towards:.4g}° from {first} to {second}, {when}"
-    )
+    way = f"towards {towards:.4g}° from {first} to {second}"
+    yield f"{curve.name}: largest {size * largest.size:.6g} {unit} {way}, {when}"
     along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
     if along > THRUST * largest.size:
         yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
