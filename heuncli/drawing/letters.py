@@ -43,8 +43,8 @@ ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
-SHADES = " ░▒▓█"
-PLAIN_SHADES = " .:*#"
+SHADES = "·░▒▓█"  # what is not known is blank
+PLAIN_SHADES = ".:*#@"
 RESET = "\x1b[0m"
 
 

@@ -18,7 +18,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, picked
 from heuncli.report.table_units import Units
-from heuncli.results import Array
+from heuncli.results import Array, Indices
 
 VISIBLE = 0.004  # of a panel's height: below, the band of an error is not seen
 MARKED = 40  # points of a curve that are marked, at most
@@ -84,8 +84,8 @@ def _curves(own: PickedTable, units: Units) -> Drawn:
             order = rows[np.argsort(across.values[rows], kind="stable")]
             own_x, values = across.values[order], size * measure.values[order]
             items += _curve(name or measure.text, own_x, values, size * measure.errors[order], y, number)
-            items += _extremes(across, own_x, values, number) if len(groups) == 1 else ()
-        panels.append(Panel(x.scaling, y, tuple(items), title=_head(measure, shown)))
+            items += _points(across, own_x, values, number, marked=len(groups) == 1)
+        panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
     return _named_below(panels), legend, [x.note] if x.note else []
 
@@ -100,7 +100,7 @@ def _across(own: PickedTable) -> tuple[SweptVariable, list[SweptVariable]]:
     return across, [one for one in own.varied if one is not across]
 
 
-def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str, Array]]:
+def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str, Indices]]:
     """Of each combination of the others its name, and its rows. Raises NotDrawable where there are too many."""
     if not others:
         return [("", np.arange(own.table.rows))]
@@ -124,24 +124,25 @@ def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str
 
 
 def _curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, number: int) -> Iterator[Item]:
-    """A curve with the band of its stated errors where that is seen; its points, where they are few."""
+    """A curve with the band of its stated errors where that is seen."""
     if np.nanmax(np.where(np.isfinite(values), errors, 0.0), initial=0.0) > VISIBLE * (y.high - y.low):
         yield Band(f"stated error of {name}", x, values - errors, values + errors, number)
     yield Trace(name, x, values, number)
-    if len(x) <= MARKED or not np.isfinite(values[1:] + values[:-1]).any():
-        for a, b in zip(x.tolist(), values.tolist(), strict=True):
-            if np.isfinite(b):
-                yield Spot(a, b, "", number)
 
 
-def _extremes(across: SweptVariable, x: Array, values: Array, number: int) -> Iterator[Spot]:
-    """The greatest and the least with their places, where they differ."""
-    if not np.isfinite(values).any():
+def _points(across: SweptVariable, x: Array, values: Array, number: int, *, marked: bool) -> Iterator[Spot]:
+    """The points of a curve, where they are few; marked: the greatest and the least with their places."""
+    known = np.flatnonzero(np.isfinite(values))
+    if not len(known):
         return
     high, low = int(np.nanargmax(values)), int(np.nanargmin(values))
-    for k in (high, low) if values[high] > values[low] else ():
-        text = f"{values[k]:.5g} at {across.word(x[k])}"
-        yield Spot(float(x[k]), float(values[k]), text, number, filled=True)
+    best = [high, low] if marked and values[high] > values[low] else []
+    for k in best:
+        yield Spot(float(x[k]), float(values[k]), f"{values[k]:.5g} at {across.word(x[k])}", number, filled=True)
+    alone = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
+    for k in known.tolist() if len(x) <= MARKED else alone:
+        if k not in best:
+            yield Spot(float(x[k]), float(values[k]), "", number)
 
 
 def _bars(own: PickedTable, units: Units) -> Drawn:
@@ -152,7 +153,7 @@ def _bars(own: PickedTable, units: Units) -> Drawn:
     for measure in own.table.measures:
         shown, size = units.of(measure.unit)
         values, errors = size * measure.values, size * measure.errors
-        y = _upward(shown, np.append(values, 0.0), np.append(errors, 0.0))
+        y = _upward(shown, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
         items: list[Item] = [Bars(measure.text, across.values, values)]
         seen = np.isfinite(values) & (errors > VISIBLE * (y.high - y.low))
         if seen.any():
@@ -164,7 +165,7 @@ def _bars(own: PickedTable, units: Units) -> Drawn:
             for a, b in zip(across.values, values, strict=True)
             if np.isfinite(b) and len(values) <= NAMES_MOST
         ]
-        panels.append(Panel(x.scaling, y, tuple(items), title=_head(measure, shown)))
+        panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     return _named_below(panels), [], [x.note] if x.note else []
 
 
@@ -183,7 +184,7 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
         at = np.searchsorted(upward.levels, upward.values), np.searchsorted(across.levels, across.values)
         values[at] = size * measure.values
         cells = Cells(measure.text, _edges(across, x.scaling), _edges(upward, y.scaling), values)
-        panels.append(Panel(x.scaling, y.scaling, (cells,), FIELD, title=_head(measure, shown)))
+        panels.append(Panel(x.scaling, y.scaling, (cells,), FIELD, title=f"{measure.text} [{shown or '-'}]"))
         known = np.isfinite(measure.values)
         if known.any():
             panels += _shades(values, shown)
@@ -191,9 +192,9 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
     return panels, [], notes
 
 
-def _shades(values: Array, unit: str) -> Iterator[Panel]:
+def _shades(field: Array, unit: str) -> Iterator[Panel]:
     """Which shade of a field is which value."""
-    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    low, high = float(np.nanmin(field)), float(np.nanmax(field))
     if not high > low:
         return
     cells = Cells(
@@ -230,7 +231,7 @@ def _scatter(own: PickedTable, units: Units) -> Drawn:
         y, x = _upward(shown, values, np.zeros_like(values)), _axis(variable)
         some = zip(variable.values[::every].tolist(), values[::every].tolist(), strict=True)
         spots = tuple(Spot(a, b, "", 0) for a, b in some if np.isfinite(b))
-        panels.append(Panel(x.scaling, y, spots, title=_head(measure, shown)))
+        panels.append(Panel(x.scaling, y, spots, title=measure.text))
     notes = [f"every {every}th of {own.table.rows:,} variants is drawn"] if every > 1 else []
     return panels, [], notes + [note for one in chosen if (note := _axis(one).note)]
 
@@ -280,18 +281,13 @@ def _edges(variable: SweptVariable, scaling: Scaling) -> Array:
     return _between(variable.levels, scaling.logarithmic)
 
 
-def _upward(unit: str, values: Array, errors: Array) -> Scaling:
+def _upward(unit: str, values: Array, errors: Array, spare: float = 0.12) -> Scaling:
     """The axis of a measure."""
     known = np.isfinite(values)
     low = float((values - errors)[known].min()) if known.any() else 0.0
     high = float((values + errors)[known].max()) if known.any() else 1.0
     zero = low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
-    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=zero, spare=0.12))
-
-
-def _head(measure: SweptNumbers, unit: str) -> str:
-    """What stands above a panel."""
-    return f"{measure.text} [{unit}]" if unit else measure.text
+    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=zero, spare=spare))
 
 
 def _named_below(panels: Sequence[Panel]) -> list[Panel]:

@@ -24,7 +24,7 @@ FEWEST = 4  # rows by which that is seen
 
 
 class SweptVariable(NamedTuple):
-    """What is varied: its name, its unit (empty: SI), and its value in each row (n,): a number, or a place in `texts`."""
+    """What is varied: its name, its unit (empty: SI), its values (n,): numbers, or places among `texts`."""
 
     name: str
     unit: str

@@ -121,7 +121,8 @@ def _of_csv(path: str) -> SweptTable:
         values, errors = (np.array([_number(cell) for cell in by_column[k + j]]) for j in (0, 1))
         lost = tuple(_lost(columns.heads[k], *why) for why in zip(values, codes, reasons, strict=True))
         measures.append(SweptNumbers(text, unit, values, np.nan_to_num(errors), lost))
-    return SweptTable(PurePath(path).name, path, tuple(variables), tuple(measures), tuple(codes), None)
+    origin = f"{path}: {len(table):,} variants"
+    return SweptTable(PurePath(path).name, origin, tuple(variables), tuple(measures), tuple(codes), None)
 
 
 def _rows(path: str) -> Iterator[list[str]]:
