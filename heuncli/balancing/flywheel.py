@@ -15,11 +15,11 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.cost import LoadedCycle
-from heuncli.commands.balance.cycle import Cycle
-from heuncli.commands.balance.effects import mass_effects
-from heuncli.commands.balance.load_torque import torques
-from heuncli.commands.balance.results import Flywheel
+from heuncli.balancing.cost import LoadedCycle
+from heuncli.balancing.cycle import Cycle
+from heuncli.balancing.effects import mass_effects
+from heuncli.balancing.load_torque import torques
+from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.mechanism.model import JointLoad, Load, Mechanism, PairLoad

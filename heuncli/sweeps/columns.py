@@ -8,9 +8,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, UNKNOWN
+from heuncli.sweeps.rows import SweepHead, SweptRow
 from heuncli.variants.axes import figure_of
 from heuncli.variants.plans import Plan
 

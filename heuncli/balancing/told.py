@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
 from heuncli import tolerances
-from heuncli.commands.balance.asked import BalanceOptions
-from heuncli.commands.balance.effects import MassEffects
-from heuncli.commands.balance.results import BalanceResults, OrderRow
-from heuncli.commands.balance.rows import CycleTurning, all_rows, residual, rounding_of
-from heuncli.commands.balance.verdicts import in_words
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.effects import MassEffects
+from heuncli.balancing.results import BalanceResults, OrderRow
+from heuncli.balancing.rows import CycleTurning, all_rows, residual, rounding_of
+from heuncli.balancing.verdicts import in_words
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from heuncli import tolerances
-from heuncli.commands.balance.results import OrderRow
+from heuncli.balancing.results import OrderRow
 from heuncli.results import Array
 
 Verdict = Literal["does not arise", "cancels", "remains"]

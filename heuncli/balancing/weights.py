@@ -6,16 +6,16 @@ import math
 
 import numpy as np
 
-from heuncli.commands.balance.asked import AskedWeight, BalanceOptions
-from heuncli.commands.balance.candidates import WeightPlace
-from heuncli.commands.balance.choice import CyclePlan
-from heuncli.commands.balance.cost import cost
-from heuncli.commands.balance.counterweights import Weight, applied, least
-from heuncli.commands.balance.cycle import Cycle, axis_of, turning
-from heuncli.commands.balance.effects import mass_effects
-from heuncli.commands.balance.results import Counterbalance, PlacedWeight
-from heuncli.commands.balance.rows import CycleTurning, all_rows, rounding_of
-from heuncli.commands.balance.verdicts import in_words
+from heuncli.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.balancing.candidates import WeightPlace
+from heuncli.balancing.choice import CyclePlan
+from heuncli.balancing.cost import cost
+from heuncli.balancing.counterweights import Weight, applied, least
+from heuncli.balancing.cycle import Cycle, axis_of, turning
+from heuncli.balancing.effects import mass_effects
+from heuncli.balancing.results import Counterbalance, PlacedWeight
+from heuncli.balancing.rows import CycleTurning, all_rows, rounding_of
+from heuncli.balancing.verdicts import in_words
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Mechanism
 from heuncli.nearest import did_you_mean

@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.choice import CyclePlan
+from heuncli.balancing.choice import CyclePlan
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.integration.determined_motion import determined

@@ -6,8 +6,8 @@ import sqlite3
 import time
 
 from heuncli.cli.entry import UsageError
-from heuncli.commands.sweep.store.errors import NOT_A_STORE, OTHER
 from heuncli.errors import Problem
+from heuncli.sweeps.store.errors import NOT_A_STORE, OTHER
 from heuncli.version import VERSION
 
 APPLICATION = 0x6865756E  # "heun": by which SQLite's header names the program that a file belongs to

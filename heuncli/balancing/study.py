@@ -7,14 +7,14 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.asked import NOTHING_ASKED, BalanceOptions
-from heuncli.commands.balance.choice import CyclePlan, planned
-from heuncli.commands.balance.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
-from heuncli.commands.balance.effects import mass_effects
-from heuncli.commands.balance.harmonics import tail
-from heuncli.commands.balance.results import BalanceResults
-from heuncli.commands.balance.rows import CycleTurning
-from heuncli.commands.balance.told import is_asked, told
+from heuncli.balancing.asked import NOTHING_ASKED, BalanceOptions
+from heuncli.balancing.choice import CyclePlan, planned
+from heuncli.balancing.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
+from heuncli.balancing.effects import mass_effects
+from heuncli.balancing.harmonics import tail
+from heuncli.balancing.results import BalanceResults
+from heuncli.balancing.rows import CycleTurning
+from heuncli.balancing.told import is_asked, told
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -35,7 +35,7 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     """The balance of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
     about = asked.about if asked.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
     if asked.period is not None:
-        from heuncli.commands.balance.period import over_period  # with all that solves motions
+        from heuncli.balancing.period import over_period  # with all that solves motions
 
         return over_period(spec, asked.period, asked, about)
     scene = drawn(spec)
@@ -47,11 +47,11 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     found = replace(told(spec, plan.coordinate, turns, effects, about, asked), settled=settled)
     found = with_loads(found, spec, scene, plan, asked)
     if asked.weights:
-        from heuncli.commands.balance.weights import counterbalanced  # where they are asked for
+        from heuncli.balancing.weights import counterbalanced  # where they are asked for
 
         found = replace(found, counterbalance=counterbalanced(spec, scene, plan, cycle, about, asked))
     if asked.flywheel is not None:
-        from heuncli.commands.balance.wheel import with_wheel  # where one is asked for
+        from heuncli.balancing.wheel import with_wheel  # where one is asked for
 
         found = with_wheel(found, spec, scene, plan, asked.flywheel)
     return found
@@ -63,7 +63,7 @@ def with_loads(
     """The results with the orders of what loads put on the shaft, where there are any."""
     if not scene.mechanism.loads and not scene.mechanism.gravity.any():
         return found
-    from heuncli.commands.balance.load_torque import load_torque  # with all that solves loads
+    from heuncli.balancing.load_torque import load_torque  # with all that solves loads
 
     own = load_torque(spec, scene, plan)
     if own.note or not own.rows:

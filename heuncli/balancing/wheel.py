@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from heuncli.commands.balance.asked import AskedWheel
-from heuncli.commands.balance.choice import CyclePlan
-from heuncli.commands.balance.cost import loaded
-from heuncli.commands.balance.flywheel import INTERVALS, flywheel, require_placed
-from heuncli.commands.balance.results import BalanceResults, Flywheel
+from heuncli.balancing.asked import AskedWheel
+from heuncli.balancing.choice import CyclePlan
+from heuncli.balancing.cost import loaded
+from heuncli.balancing.flywheel import INTERVALS, flywheel, require_placed
+from heuncli.balancing.results import BalanceResults, Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.records import replace
 from heuncli.spec.models import Spec

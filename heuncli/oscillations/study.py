@@ -12,14 +12,15 @@ from typing import Literal
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.modes.rest_digits import as_known
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.linearisation.modes import SceneModes, most, shape_of
-from heuncli.linearisation.oscillations import oscillations
+from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smoothness import without_slope
 from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.named_tuples import NamedTuple
+from heuncli.oscillations.rest_digits import as_known
 from heuncli.records import replace
 from heuncli.redundancy.neighbours import neighbours
 from heuncli.rest.steady_states import is_steady
@@ -44,19 +45,37 @@ def modes(spec: Spec, without: Sequence[str] = ()) -> SceneModes:
 
 def found_in(spec: Spec) -> SceneModes:
     """The modes of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
+    return told(spec, looked_for(spec))
+
+
+class FoundModes(NamedTuple):
+    """The scene in the state that it oscillates about, whether that was found to rest, and all motions about it."""
+
+    here: Looked
+    at: Literal["rest", "state"]
+    modes: list[Mode]
+
+
+def looked_for(spec: Spec) -> FoundModes:
+    """All small motions of a spec's scene. Raises SolveError where there is no state to oscillate about."""
     setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_no_time(setup)
     here, at, beside = state_of(setup)
     require_slopes(here)
-    found = as_known(oscillations(here.system, here.loose), here, beside)
+    return FoundModes(here, at, as_known(oscillations(here.system, here.loose), here, beside))
+
+
+def told(spec: Spec, found: FoundModes) -> SceneModes:
+    """The modes by the coordinates of the joints."""
+    here = found.here
     rows = coordinates(here.layout, here.found)
-    shapes = [shape_of(mode.shape, rows) for mode in found]
+    shapes = [shape_of(mode.shape, rows) for mode in found.modes]
     return SceneModes(
         title=spec.title,
-        at=at,
-        steady=moves(here) and bool(found),  # with nothing free nothing was compared at later instants
+        at=found.at,
+        steady=moves(here) and bool(found.modes),  # with nothing free nothing was compared at later instants
         held=here.layout.driven and not moves(here),
-        modes=tuple(found),
+        modes=tuple(found.modes),
         shapes=tuple(shapes),
         largest=tuple(most(shape, here.layout.size) for shape in shapes),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.commands.balance.effects import MassEffects
+from heuncli.balancing.effects import MassEffects
 from heuncli.records import fields, record
 from heuncli.results import Array, Block
 

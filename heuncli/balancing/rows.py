@@ -9,10 +9,10 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.effects import MassEffects
-from heuncli.commands.balance.harmonics import orders_of, turning_vectors
-from heuncli.commands.balance.results import OrderRow, Residual
-from heuncli.commands.balance.verdicts import verdict_of
+from heuncli.balancing.effects import MassEffects
+from heuncli.balancing.harmonics import orders_of, turning_vectors
+from heuncli.balancing.results import OrderRow, Residual
+from heuncli.balancing.verdicts import verdict_of
 from heuncli.records import record, replace
 from heuncli.results import Array
 

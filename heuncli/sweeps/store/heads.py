@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 
-from heuncli.commands.sweep.rows import SweepHead, SweptMeasure
+from heuncli.sweeps.rows import SweepHead, SweptMeasure
 from heuncli.variants.axes import Drawn, ParameterAxis
 from heuncli.variants.plans import Draws, Plan
 

@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli.commands.balance.choice import CyclePlan
-from heuncli.commands.balance.cycle import LOCAL, driven_mechanism, require_determined, still
-from heuncli.commands.balance.results import OverCycle
+from heuncli.balancing.choice import CyclePlan
+from heuncli.balancing.cycle import LOCAL, driven_mechanism, require_determined, still
+from heuncli.balancing.results import OverCycle
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import ready

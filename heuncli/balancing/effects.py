@@ -13,7 +13,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from heuncli.commands.balance.cycle import Cycle
+from heuncli.balancing.cycle import Cycle
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.records import record

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.candidates import Candidate, WeightPlace
-from heuncli.commands.balance.cycle import Cycle
-from heuncli.commands.balance.effects import mass_effects
-from heuncli.commands.balance.harmonics import plane_across
-from heuncli.commands.balance.least_squares import solved
+from heuncli.balancing.candidates import Candidate, WeightPlace
+from heuncli.balancing.cycle import Cycle
+from heuncli.balancing.effects import mass_effects
+from heuncli.balancing.harmonics import plane_across
+from heuncli.balancing.least_squares import solved
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Body, Mechanism
 from heuncli.records import record, replace

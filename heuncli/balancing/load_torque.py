@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.balance.choice import CyclePlan
-from heuncli.commands.balance.cost import LoadedCycle, loaded
-from heuncli.commands.balance.results import OrderRow
-from heuncli.commands.balance.rows import CycleTurning, order_rows
+from heuncli.balancing.choice import CyclePlan
+from heuncli.balancing.cost import LoadedCycle, loaded
+from heuncli.balancing.results import OrderRow
+from heuncli.balancing.rows import CycleTurning, order_rows
 from heuncli.errors import SolveError
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record

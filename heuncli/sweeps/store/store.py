@@ -26,11 +26,11 @@ from types import TracebackType
 from typing import Any
 
 from heuncli.cli.files import place_of
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.store.errors import told_errors
-from heuncli.commands.sweep.store.heads import head_of_texts, texts_of_head
-from heuncli.commands.sweep.store.kinds import begun, require_own
 from heuncli.named_tuples import NamedTuple
+from heuncli.sweeps.rows import SweepHead, SweptRow
+from heuncli.sweeps.store.errors import told_errors
+from heuncli.sweeps.store.heads import head_of_texts, texts_of_head
+from heuncli.sweeps.store.kinds import begun, require_own
 from heuncli.variants.asking import Answer, Measured
 
 AGAIN = frozenset({"time-limit", "out-of-memory", "too-much-memory", "worker-died", "bug"})  # no answer for good

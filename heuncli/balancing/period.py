@@ -12,13 +12,13 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.balance.asked import BalanceOptions
-from heuncli.commands.balance.cycle import QUARTER, Cycle, at_unit_rate
-from heuncli.commands.balance.effects import MassEffects, mass_effects
-from heuncli.commands.balance.harmonics import tail
-from heuncli.commands.balance.results import BalanceResults, Period
-from heuncli.commands.balance.rows import CycleTurning
-from heuncli.commands.balance.told import told
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.cycle import QUARTER, Cycle, at_unit_rate
+from heuncli.balancing.effects import MassEffects, mass_effects
+from heuncli.balancing.harmonics import tail
+from heuncli.balancing.results import BalanceResults, Period
+from heuncli.balancing.rows import CycleTurning
+from heuncli.balancing.told import told
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.bodies import BodyStates, body_states

@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from heuncli.commands.balance.candidates import NO_EFFECT, Candidate
+from heuncli.balancing.candidates import NO_EFFECT, Candidate
 from heuncli.results import Array
 
 DEPENDENT = 1e-10  # of the largest singular value: places that serve as well as each other
