@@ -61,7 +61,7 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of drawing/picture.py."""
+    """A marked place with its words, above it or below; shape: one of drawing/picture.py."""
 
     x: float
     y: float
@@ -69,6 +69,7 @@ class Spot(NamedTuple):
     pen: int | None = None
     shape: str = "circle"
     filled: bool = False
+    below: bool = False
 
 
 class Words(NamedTuple):
@@ -81,10 +82,11 @@ class Words(NamedTuple):
 
 
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words."""
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; above: these stand above the panel."""
 
     x: float
     text: str
+    above: bool = False
 
 
 class Blank(NamedTuple):

@@ -90,9 +90,11 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
     y = legend[1]
     for panel in figure.panels:
         y += LINE + 4.0 if panel.title else 6.0
+        head = y - 6.0
+        y += LINE * any(isinstance(item, Upright) and item.above for item in panel.items)
         box = _box(panel, y, width)
         if panel.title:
-            shapes.append(Text(box.left, y - 6.0, shown(panel.title), NAME, bold=True))
+            shapes.append(Text(box.left, head, shown(panel.title), NAME, bold=True))
         shapes += _panel(panel, box)
         y = box.bottom + (UNDER if panel.x.label else BETWEEN)
     for note in figure.notes:
@@ -247,7 +249,8 @@ def _spot(item: Spot, box: Box) -> Iterator[Shape]:
         text = shown(item.text)
         room = LETTER * SMALL * len(text)
         right = x + NEAR + 3.0 + room <= box.right
-        up = -NEAR - 2.0 if y - SMALL - 6.0 > box.top else SMALL + 5.0
+        room_below, room_above = y + SMALL + 6.0 < box.bottom, y - SMALL - 6.0 > box.top
+        up = SMALL + 5.0 if (item.below and room_below) or not room_above else -NEAR - 2.0
         yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
 
 
@@ -259,7 +262,9 @@ def _words(item: Words, box: Box) -> Iterator[Shape]:
 def _upright(item: Upright, box: Box) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), GREY, 1.0, (3.0, 3.0), shown(item.text))
-    if item.text:  # to the left of its line, where there is room
+    if item.above:
+        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
+    elif item.text:  # to the left of its line, where there is room
         left = x - 3.0 if x - box.left > SMALL + 3.0 else x + SMALL
         yield Text(left, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
 

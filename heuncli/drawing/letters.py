@@ -7,7 +7,7 @@ there is no braille, the pen's letter stands on the curve.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -171,6 +171,8 @@ def _panel(panel: Panel, look: Look) -> list[str]:
     lines = [*(head for head in heads if head)]
     if panel.bare:
         return lines + canvas.lines()
+    above = {round(canvas.x(i.x)) // canvas.per_x: i.text for i in panel.items if isinstance(i, Upright) and i.above}
+    lines += [_placed(above, canvas)] if above else []
     marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
     for row, text in enumerate(canvas.lines()):
         lines.append(
@@ -195,13 +197,20 @@ def _below(panel: Panel, canvas: Canvas) -> list[str]:
     lines = [f"{'':{LABEL}} {corner}{axis}"]
     if not panel.x.label:
         return lines
-    under = [" "] * (canvas.columns + LABEL + 12)
-    for place, text in sorted(places.items()):
-        begin = max(place - len(text) // 2, 0) + LABEL + 2
-        if all(c == " " for c in under[max(begin - 1, 0) : begin + len(text) + 1]):
-            under[begin : begin + len(text)] = shown(text)
     middle = max(0, (canvas.columns - len(panel.x.label)) // 2)
-    return [*lines, "".join(under).rstrip(), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+
+
+def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
+    """A line with words about columns of a panel, as many as do not touch; none goes farther than the panel's edge."""
+    most = canvas.columns + LABEL + 2
+    line = [" "] * most
+    for place, words in sorted(places.items()):
+        text = shown(words)
+        begin = min(max(place - len(text) // 2, 0) + LABEL + 2, most - len(text))
+        if begin >= 0 and all(c == " " for c in line[max(begin - 1, 0) : begin + len(text) + 1]):
+            line[begin : begin + len(text)] = text
+    return "".join(line).rstrip()
 
 
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
@@ -245,7 +254,8 @@ def _spot(item: Spot, canvas: Canvas) -> None:
     if item.text:
         text = shown(item.text)
         right = column + 1 + len(text) <= canvas.columns
-        canvas.write(text, column + 1 if right else column - len(text), row)
+        below = item.below and row + 1 < canvas.rows
+        canvas.write(text, column + 1 if right else column - len(text), row + below)
 
 
 def _words(item: Words, canvas: Canvas) -> None:
@@ -256,7 +266,7 @@ def _words(item: Words, canvas: Canvas) -> None:
 def _upright(item: Upright, canvas: Canvas) -> None:
     x = canvas.x(item.x)
     canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, -1, 2)
-    if item.text:
+    if item.text and not item.above:
         canvas.write(shown(item.text), round(x) // canvas.per_x + 1, 0)
 
 
