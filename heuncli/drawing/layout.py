@@ -281,7 +281,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
         low, high = max(left, x), min(right, x + height)
         if low < high:
             yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
-    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY)
+    yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY)
 
 
 def _bars(item: Bars, box: Box) -> Iterator[Shape]:

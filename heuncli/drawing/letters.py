@@ -274,7 +274,7 @@ def _blank(item: Blank, canvas: Canvas) -> None:
     left, right = (round(canvas.x(x)) // canvas.per_x for x in (item.low, item.high))
     text = f" {shown(item.text)} "
     if item.text and len(text) <= right - left + 1:
-        canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 2)
+        canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 3)
     for row in range(canvas.rows):
         for column in range(max(left, 0), min(right + 1, canvas.columns)):
             canvas.dots[row, column] = 0

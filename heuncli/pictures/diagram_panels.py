@@ -11,7 +11,7 @@ from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Stro
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.bars import AlongBar, Bar, Extreme, Reach
-from heuncli.report.digits import OPEN_NOTE, style, write
+from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
 
@@ -21,7 +21,6 @@ LOBE = 0.05  # of a bar's length, and of the largest value: what is less has no 
 VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
 TICKS = 4  # of an axis that is turned over
 SPARE = 0.16  # of a panel's height, beyond what is drawn: room for the words at extremes
-OPEN = OPEN_NOTE.partition(": ")[2]
 UNKNOWN = "not known: the stated error is as large as the numbers"
 
 
@@ -49,9 +48,9 @@ class Drawn(NamedTuple):
         lines = [self.lines[quantity].values, *([self.reaches[quantity].low] if self.reaches else [])]
         return self.bar.open_somewhere(quantity) or any(bool(np.isnan(values).any()) for values in lines)
 
-    def unknown(self, quantity: str) -> bool:
-        """Whether its error is as large as itself."""
-        return self.size(quantity) <= self.bar.error(quantity) and not self.open_in_part(quantity)
+    def is_zero(self, quantity: str) -> bool:
+        """Whether it is not told from 0 wherever it is known."""
+        return self.size(quantity) <= self.bar.error(quantity)
 
 
 class Scales(NamedTuple):
@@ -74,10 +73,11 @@ def diagram(quantity: str, drawn: Sequence[Drawn], units: Units, label: str, *, 
 
 def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> Scaling:
     """The axis of a quantity, with its zero."""
-    values = np.array([to.up * to.value * one.value for each in drawn for one in each.extremes(quantity)])
+    told = [each for each in drawn if not each.is_zero(quantity)]
+    values = np.array([to.up * to.value * one.value for each in told for one in each.extremes(quantity)])
     known = values[np.isfinite(values)]
     if not known.size:
-        return Scaling(label, -1.0, 1.0, named=((0.0, ""),))
+        return Scaling(label, -1.0, 1.0, named=((0.0, "0"),))
     low, high = ends(float(known.min()), float(known.max()), zero=True, spare=SPARE)
     if to.up > 0.0:
         return Scaling(label, low, high)
@@ -88,7 +88,7 @@ def _of_one(drawn: Drawn, quantity: str, to: Scales, y: Scaling, *, alone: bool)
     """What is drawn of a bar; alone: it is the only one, whose ordinates are hatched."""
     line, reach = drawn.lines[quantity], drawn.reaches.get(quantity)
     whose = f"{drawn.name}: " if drawn.name else ""
-    if drawn.unknown(quantity):
+    if drawn.is_zero(quantity) and not drawn.open_in_part(quantity):
         yield Blank(0.0, to.s * drawn.bar.length, f"{whose}{UNKNOWN}")
         return
     s, known = line.s, np.isfinite(line.values)
@@ -96,14 +96,18 @@ def _of_one(drawn: Drawn, quantity: str, to: Scales, y: Scaling, *, alone: bool)
         known = np.isfinite(reach.low)
         s = reach.s
     for a, b in stretches(s, ~known):
-        yield Blank(to.s * a, to.s * b, f"{whose}open: {OPEN}")
+        yield Blank(to.s * a, to.s * b, f"{whose}{OPEN}")
+    if drawn.is_zero(quantity):  # where it is known
+        yield Trace(f"{whose}{quantity}", to.s * line.s, 0.0 * line.values, drawn.pen)
+        return
     up = to.up * to.value
     if reach is not None:
         both = np.sort(up * np.stack([reach.low, reach.high]), axis=0)
         yield Band(f"{whose}lowest and highest of {quantity}", to.s * reach.s, both[0], both[1], drawn.pen)
     values, error = up * line.values, to.value * drawn.bar.error(quantity)
     if error > VISIBLE * (y.high - y.low):
-        yield Band(f"{whose}stated error of {quantity}", to.s * line.s, values - error, values + error, drawn.pen)
+        both = np.clip([values - error, values + error], y.low, y.high)
+        yield Band(f"{whose}stated error of {quantity}", to.s * line.s, both[0], both[1], drawn.pen)
     if alone:
         signs = list(_signs(to.s * line.s, values, to.up))
         yield from _hatch(to.s * line.s, values, drawn.pen, [sign.x for sign in signs])

@@ -16,12 +16,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from heuncli.drawing.figure import Band, Figure, Panel, Scaling, Upright
+from heuncli.drawing.figure import Blank, Figure, Panel, Scaling, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.pictures.bars import UNITS, Bar
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.diagram_panels import Drawn, diagram
-from heuncli.report.digits import rough
+from heuncli.report.digits import OPEN, OPEN_NOTE, rough
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
 from heuncli.results_schema import RESULTANTS
@@ -48,6 +48,7 @@ def diagrams(
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _words(source, at)]
+    banded = False
     for name in names:
         drawn = list(_drawn(sources, name, at))
         words.append(_heading(sources[0], name))
@@ -57,8 +58,10 @@ def diagrams(
         shown, left_out = _sorted_out(drawn)
         notes += [f"{name}: {text}" for text in left_out]
         panels += _panels(name, drawn, shown, units, tension_side=tension_side)
-    if any(isinstance(item, Band) for panel in panels for item in panel.items):
-        words.append(BAND)
+        banded = banded or any(each.reaches for each in drawn)
+    if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
+        notes.append(OPEN_NOTE)
+    words += [BAND] * banded
     return Figure(sources[0].study.results.title, words, panels, legend, notes)
 
 
@@ -134,10 +137,10 @@ def _verdict(drawn: Drawn, quantity: str) -> str:
         return "some"
     if size <= bar.certain.lost(bar.unit(quantity)) or size == 0.0:
         return "zero"
-    if not size <= bar.error(quantity):
+    if not drawn.is_zero(quantity):
         return "some"
     family = [q for q in RESULTANTS if UNITS[q] == UNITS[quantity]]
-    return "within" if any(drawn.size(q) > bar.error(q) for q in family) else "unknown"
+    return "within" if any(not drawn.is_zero(q) for q in family) else "unknown"
 
 
 def _panels(
