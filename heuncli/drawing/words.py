@@ -28,18 +28,18 @@ def words(items: Sequence[Item], box: Box, drawn: Sequence[Shape], room: WordBox
     texts: list[Shape] = []
     told: list[str] = []
     for item in in_turn(items):
-        if item.text:
-            text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
-            if text is None:
-                told.append(item.note or item.text)
-            else:
-                texts.append(text)
+        text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
+        if text is None:
+            told.append(item.note or item.text)
+        else:
+            texts.append(text)
     return texts, told
 
 
 def in_turn(items: Sequence[Item]) -> list[Spot | Upright]:
-    """What has words, in the order in which these look for room: numbers at marks first."""
-    return [item for kind in (Spot, Upright) for item in items if isinstance(item, kind)]
+    """What has words in the panel, in the order in which these look for room: numbers at marks first."""
+    spots = [item for item in items if isinstance(item, Spot) and item.text]
+    return [*spots, *(item for item in items if isinstance(item, Upright) and item.text and not item.above)]
 
 
 def wide(text: str, size: float) -> float:
