@@ -55,14 +55,14 @@ def load(
 
 
 def load_with_cases(
-    path: str, overrides: Mapping[str, str] | None = None, checking: bool = True
+    path: str, overrides: Mapping[str, str] | None = None, checking: bool = True, text: str | None = None
 ) -> tuple[Spec, dict[str, Spec]]:
-    """The scene, and each of its load cases by its name, of one reading of the file.
+    """The scene, and each of its load cases by its name, of one reading of the file, or of a text that stands for it.
 
     Raises SpecError with all problems of the scene, else with those of all cases, which are named in them.
     """
     begin_file()
-    source = read(path, None)
+    source = read(path, text)
     spec = Loading(path, source, overrides or {}, checking, None).spec()
     cases: dict[str, Spec] = {}
     problems: list[Problem] = []
