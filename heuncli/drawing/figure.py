@@ -71,6 +71,15 @@ class Spot(NamedTuple):
     filled: bool = False
 
 
+class Words(NamedTuple):
+    """A few words, or a sign, about a place, without a mark."""
+
+    x: float
+    y: float
+    text: str
+    pen: int | None = None
+
+
 class Upright(NamedTuple):
     """A vertical mark across a panel: an event, a blow, a jump, and its words."""
 
@@ -107,7 +116,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):

@@ -23,6 +23,7 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
+    Words,
 )
 from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
@@ -250,11 +251,17 @@ def _spot(item: Spot, box: Box) -> Iterator[Shape]:
         yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
 
 
+def _words(item: Words, box: Box) -> Iterator[Shape]:
+    colour = BLACK if item.pen is None else pen(item.pen).colour
+    yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
+
+
 def _upright(item: Upright, box: Box) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), GREY, 1.0, (3.0, 3.0), shown(item.text))
-    if item.text:
-        yield Text(x - 3.0, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
+    if item.text:  # to the left of its line, where there is room
+        left = x - 3.0 if x - box.left > SMALL + 3.0 else x + SMALL
+        yield Text(left, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
 
 
 def _blank(item: Blank, box: Box) -> Iterator[Shape]:
@@ -298,8 +305,8 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 

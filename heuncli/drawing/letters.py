@@ -28,6 +28,7 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
+    Words,
 )
 from heuncli.drawing.pens import pen
 from heuncli.drawing.ticks import ticks
@@ -247,6 +248,11 @@ def _spot(item: Spot, canvas: Canvas) -> None:
         canvas.write(text, column + 1 if right else column - len(text), row)
 
 
+def _words(item: Words, canvas: Canvas) -> None:
+    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+    canvas.write(shown(item.text), column - len(shown(item.text)) // 2, row)
+
+
 def _upright(item: Upright, canvas: Canvas) -> None:
     x = canvas.x(item.x)
     canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, -1, 2)
@@ -256,6 +262,9 @@ def _upright(item: Upright, canvas: Canvas) -> None:
 
 def _blank(item: Blank, canvas: Canvas) -> None:
     left, right = (round(canvas.x(x)) // canvas.per_x for x in (item.low, item.high))
+    text = f" {shown(item.text)} "
+    if item.text and len(text) <= right - left + 1:
+        canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 2)
     for row in range(canvas.rows):
         for column in range(max(left, 0), min(right + 1, canvas.columns)):
             canvas.dots[row, column] = 0
@@ -293,6 +302,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

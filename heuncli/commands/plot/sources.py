@@ -23,11 +23,17 @@ from heuncli.study.workflow import solve
 
 def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
     """The runs, in the order of the files and of their cases; what they are warned of is told."""
-    specs = [pair for file in files for pair in _specs(file, request)]
+    specs = specs_of(files, request)
     asked = [MeasureRequest("", path) for path in paths]
     for _, spec in specs:
         measure.check(asked, spec, "heun plot")
-    return [_solved(name if len(specs) > 1 else "", spec, paths, request) for name, spec in specs]
+    return [solution(name, spec, paths, request) for name, spec in specs]
+
+
+def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
+    """The specs, in the order of the files and of their cases, each with its name; of one alone that is empty."""
+    specs = [pair for file in files for pair in _specs(file, request)]
+    return specs if len(specs) > 1 else [("", spec) for _, spec in specs]
 
 
 def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
@@ -44,8 +50,8 @@ def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     require_other_file(request.output, [file])
 
 
-def _solved(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
-    """One of them solved."""
+def solution(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
+    """A spec solved for what some paths need; what it is warned of is told."""
     what = asked_by(paths, spec)
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
     options = replace(
