@@ -29,6 +29,7 @@ from heuncli.foreign_text import shown
 
 STYLE = Path(__file__).with_name("report.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+LONG = 26  # letters of a cell that goes on in a second line
 ALONE = ("meta", "br")  # elements that have no end
 
 
@@ -116,7 +117,8 @@ def _row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
 
 def _cell(cell: Cell, kind: str) -> str:
     text = escaped(cell.text)
-    return element("td", element("strong", text) if cell.governs else text, class_=kind)
+    kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG))))
+    return element("td", element("strong", text) if cell.governs else text, class_=kinds)
 
 
 def _drawing(part: Drawing) -> str:

@@ -21,22 +21,27 @@ from heuncli.drawing.letters import Look, drawn
 from heuncli.foreign_text import shown
 
 MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~&!$])")  # what means something anywhere in a line
-BEGINS = re.compile(r"^(\s*)([-+=:]|\d+[.)])")  # and at its beginning
+BEGINS = re.compile(r"^(\d*)([-+=.)])")  # and at its beginning
 LOOK = Look(100, braille=True, colours=False)
 SIGNS = {"plain": "", "good": "**✓** ", "bad": "**✗** ", "unsure": "**!** "}
 
 
 def as_markdown(report: ClientReport) -> str:
     """The text."""
-    blocks = [f"# {escaped(report.title)}", *_parts(report.lead)]
+    blocks = [f"# {line(report.title)}", *_parts(report.lead)]
     for number, chapter in enumerate(report.chapters, 1):
         blocks += [f"## {number} {escaped(chapter.title)}", *_parts(chapter.parts)]
     return "\n\n".join(blocks) + "\n"
 
 
 def escaped(text: str) -> str:
-    """A text on one line that is shown as it is."""
-    return BEGINS.sub(r"\1\\\2", MARKUP.sub(r"\\\1", shown(text)))
+    """A text within a line, such as a cell, that is shown as it is."""
+    return MARKUP.sub(r"\\\1", shown(text))
+
+
+def line(text: str) -> str:
+    """A text at the beginning of a line, where more means something."""
+    return BEGINS.sub(r"\1\\\2", escaped(text).strip())
 
 
 def fenced(text: str, language: str = "text") -> str:
@@ -52,7 +57,7 @@ def _parts(parts: Sequence[Part]) -> Iterator[str]:
 
 
 def _sentence(part: Sentence) -> str:
-    return SIGNS[part.mood] + escaped(part.text)
+    return SIGNS[part.mood] + line(part.text)
 
 
 def _facts(part: Facts) -> str:
@@ -61,20 +66,20 @@ def _facts(part: Facts) -> str:
 
 def _listing(part: Listing) -> str:
     title = f"**{escaped(part.title)}**\n\n" if part.title else ""
-    return title + "\n".join(f"- {escaped(item)}" for item in part.items)
+    return title + "\n".join(f"- {line(item)}" for item in part.items)
 
 
 def _grid(part: Grid) -> str:
     """A table under its heading; a line across is a row with a bold first cell."""
     name, _, rest = part.caption.partition("  ")
-    blocks = [f"### {escaped(name)}", *([escaped(rest)] if rest else [])]
+    blocks = [f"### {line(name)}", *([line(rest)] if rest else [])]
     if part.columns:
         blank = [""] * (len(part.columns) - 1)
         rows = [[f"**{escaped(row)}**", *blank] if isinstance(row, str) else list(map(_cell, row)) for row in part.rows]
         rules = ["---" if column.align == "left" else "---:" for column in part.columns]
         blocks.append(_table([escaped(column.head) for column in part.columns], rules, rows))
     if part.notes:
-        blocks.append("\n".join(f"- {escaped(note)}" for note in part.notes))
+        blocks.append("\n".join(f"- {line(note)}" for note in part.notes))
     return "\n\n".join(blocks)
 
 
@@ -92,7 +97,7 @@ def _table(heads: Sequence[str], rules: Sequence[str], rows: Sequence[Sequence[s
 
 
 def _drawing(part: Drawing) -> str:
-    return f"{escaped(part.caption)}\n\n{fenced(drawn(part.figure, LOOK).rstrip())}"
+    return f"{line(part.caption)}\n\n{fenced(drawn(part.figure, LOOK).rstrip())}"
 
 
 def _verbatim(part: Verbatim) -> str:

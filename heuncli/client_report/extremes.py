@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -10,8 +10,10 @@ from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, UNKNOWN, Style, rough, style, write_times
 from heuncli.report.table_units import Units
+from heuncli.results import Array, Place
+from heuncli.telling.columns import position
 from heuncli.telling.envelopes import Bound, envelope
-from heuncli.telling.kept import BEYOND, KeptNumber, KeptRun
+from heuncli.telling.kept import BEYOND, KeptNumber
 
 LEAST, GREATEST = "least", "greatest"
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
@@ -43,14 +45,31 @@ class Ends(NamedTuple):
         return [end.value for end in (self.low, self.high) if isinstance(end.value, float)]
 
 
-def ends_of(kept: KeptRun, path: str) -> Ends | None:
+def ends_of(run: ReportedRun, path: str) -> Ends | None:
     """The extremes of a number of one case, of a run of cuts those over its whole stretch; None where it has none."""
-    numbers = kept.numbers
+    numbers = run.kept.numbers
     if path in numbers:
         return _ends(numbers[path], numbers[path])
-    if path + LOWEST in numbers:
-        return _ends(numbers[path + LOWEST], numbers[path + HIGHEST])
-    return None
+    if path + LOWEST not in numbers:
+        return None
+    ends = _ends(numbers[path + LOWEST], numbers[path + HIGHEST])
+    return ends._replace(
+        low=_placed(ends.low, run, path, np.nanargmin), high=_placed(ends.high, run, path, np.nanargmax)
+    )
+
+
+def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> End:
+    """An extreme along a run of cuts with its place; of one that is the same at all instants no place is kept."""
+    if end.place is not None or not isinstance(end.value, float):
+        return end
+    _, name, *quantity = path.split(".")
+    section = run.results.sections[name]
+    values = section["stress"][quantity[1]] if quantity[0] == "stress" else section[quantity[0]]
+    if not np.isfinite(values[0]).any():
+        return end
+    cut = int(which(values[0]))
+    side = section["side"][cut] if section.get("side") else None
+    return end._replace(place=position(Place(float(section["s"][cut]), side, cut)))
 
 
 def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
@@ -99,6 +118,11 @@ def text_of(value: float | str, how: Style, size: float) -> str:
     return UNKNOWN if value == BEYOND else OPEN if value == OPEN else UNKNOWN
 
 
+def is_steady(ends: Ends, how: Style, size: float) -> bool:
+    """Whether the lowest and the highest are the same to the digits that are written: then neither has an instant."""
+    return text_of(ends.low.value, how, size) == text_of(ends.high.value, how, size)
+
+
 def place_text(place: str | None, units: Units, *, named: bool = True) -> str:
     """A place along a run of cuts, which is kept in metres, with the side of what acts there; named: its unit, too."""
     if place is None:
@@ -145,7 +169,7 @@ class Spread(NamedTuple):
 
 def spread_of(of: Reported, path: str, name: str) -> Spread | None:
     """The highest of a number over all cases; None where no case has it, or it is 0 in all."""
-    found = {run.name: ends for run in of.runs if (ends := ends_of(run.kept, path)) is not None}
+    found = {run.name: ends for run in of.runs if (ends := ends_of(run, path)) is not None}
     known = {case: ends for case, ends in found.items() if isinstance(ends.high.value, float)}
     if not known:
         return None
@@ -156,7 +180,7 @@ def spread_of(of: Reported, path: str, name: str) -> Spread | None:
     how = style_of(list(known.values()), run, size)
     if how.write(high.value * size) == "0":
         return None
-    steady = text_of(ends.low.value, how, size) == how.write(high.value * size) and ends.high.place is None
+    steady = ends.high.place is None and is_steady(ends, how, size)
     at = "" if steady else instant_text(ends.high.at, run)
     return Spread(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
 
@@ -164,6 +188,6 @@ def spread_of(of: Reported, path: str, name: str) -> Spread | None:
 def runs_in(of: Reported, path: str) -> Iterator[tuple[ReportedRun, Ends]]:
     """The cases that have a number, with its extremes."""
     for run in of.runs:
-        ends = ends_of(run.kept, path)
+        ends = ends_of(run, path)
         if ends is not None:
             yield run, ends

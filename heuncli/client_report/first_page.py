@@ -11,6 +11,7 @@ from heuncli.client_report.extremes import Spread, spread_of
 from heuncli.client_report.parts import Facts, Part, Sentence
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
+from heuncli.report.impulse_tables import sizes_of
 from heuncli.report.plurals import count
 from heuncli.version import VERSION
 
@@ -57,7 +58,7 @@ def _versions(of: Reported) -> str:
 
 def summary(of: Reported) -> list[Part]:
     """What is to be known before anything else: what failed, what is open, what governs."""
-    return [*_ended(of), *_checked(of), *_used(of), *_largest(of), *_open(of), *_warned(of)]
+    return [*_ended(of), *_checked(of), *_used(of), *_largest(of), *_struck(of), *_open(of), *_warned(of)]
 
 
 def _ended(of: Reported) -> Iterator[Sentence]:
@@ -93,11 +94,18 @@ def _used(of: Reported) -> Iterator[Sentence]:
         return
     beyond = [spread.name for spread in found if spread.high is not None and spread.high.value > 1.0]
     most = max(found, key=lambda spread: spread.high.value if spread.high else 0.0)
-    text = f"Largest utilisation of strength: {most.high_text()} in section {most.name}{most.where}."
+    what = f"Largest utilisation of strength{_known(of, 'sections')}"
+    text = f"{what}: {most.high_text()} in section {most.name}{most.where}."
     if beyond:
         yield Sentence(f"{text} Beyond strength: {_some(beyond)}.", "bad")
     else:
-        yield Sentence(text, "good")
+        yield Sentence(text, "unsure" if _known(of, "sections") else "good")
+
+
+def _known(of: Reported, block: str) -> str:
+    """What is said beside the largest of a block, where some of it is open and might be larger."""
+    is_open = any(path.startswith(f"{block}.") for run in of.runs for path in run.kept.open)
+    return " that is known" if is_open else ""
 
 
 def _of_sections(of: Reported, quantity: str) -> list[Spread]:
@@ -113,9 +121,21 @@ def _largest(of: Reported) -> Iterator[Sentence]:
     known = [spread for spread in joints if spread is not None and spread.high is not None]
     if known:
         most = max(known, key=lambda spread: spread.high.value if spread.high else 0.0)
-        yield Sentence(f"Largest joint force: {most.high_text()} in {most.name}{most.where}.")
+        yield Sentence(f"Largest joint force{_known(of, 'joints')}: {most.high_text()} in {most.name}{most.where}.")
     if whole is not None and whole.high is not None:
-        yield Sentence(f"Largest force on the foundation: {whole.high_text()}{whole.where}.")
+        yield Sentence(f"Largest force on the foundation{_known(of, 'foundation')}: {whole.high_text()}{whole.where}.")
+
+
+def _struck(of: Reported) -> Iterator[Sentence]:
+    """The blows, and their largest impulse."""
+    for run in of.runs:
+        blows = run.results.impulses
+        if not blows:
+            continue
+        unit, size = of.units.of("N·s")
+        most = size * max(sizes_of(blow, of.labels)[0] for blow in blows)
+        text = f"{count(len(blows), 'blow')}; largest impulse of a joint, a stop or on the ground: {most:.6g} {unit}."
+        yield Sentence(f"Case {run.name}: {text}" if run.name else text)
 
 
 def _open(of: Reported) -> Iterator[Sentence]:

@@ -30,6 +30,8 @@ from heuncli.results import Results
 from heuncli.results_schema import MAGNITUDES, XYZ
 from heuncli.telling.envelopes import Bound
 
+UNHELD = "There are no joints, and nothing stands on the ground."
+OF_BLOWS = "The scene is struck and nothing else is asked for: see the blows for its joints and the ground."
 WHOLE = {"force": "|F|", "moment": "|M|"}  # of a vector
 MOST_CASES = 12  # told in a line each; of more those that govern
 GOVERNS = "bold: the least and the greatest of all load cases; of magnitudes the greatest alone"
@@ -64,7 +66,7 @@ def load_tables(of: Reported) -> list[Part]:
     """The tables of the foundation, the joints, the stops and the applied loads."""
     plans = (FOUNDATION, JOINTS, STOPS)
     found = [part for plan in plans for part in _table(of, plan)]
-    return found or [Sentence("Nothing is held: there are no joints, and nothing reaches the ground.")]
+    return found or [Sentence(UNHELD if not of.spec.joints else OF_BLOWS)]
 
 
 def _table(of: Reported, plan: TablePlan) -> Iterator[Part]:

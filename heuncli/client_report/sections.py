@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.client_report.extremes import Ends, governing, instant_text, place_text, runs_in, style_of, text_of
+from heuncli.client_report.extremes import (
+    Ends,
+    governing,
+    instant_text,
+    is_steady,
+    place_text,
+    runs_in,
+    style_of,
+    text_of,
+)
 from heuncli.client_report.load_table import LoadGroup, LoadRow, grid, timed
 from heuncli.client_report.parts import Cell, Drawing, Grid, Part
 from heuncli.client_report.reported import Reported, ReportedRun
@@ -105,12 +114,13 @@ def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bo
     how = style_of([each.mises for each in found], of.runs[0], size)
     shares = style_of([each.used for each in found if each.used is not None], of.runs[0], 1.0)
     end = (one.used or one.mises).high
+    steady = end.place is None and is_steady(one.mises, how, size)
     strength = one.run.study.spec.sections[one.name].strength
     return [
         Cell(one.name),
         *([Cell(one.run.told)] if of.has_cases else []),
         Cell(place_text(end.place, of.units, named=False)),
-        *([Cell(instant_text(end.at, one.run))] if timed(of) else []),
+        *([Cell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
         Cell(text_of(one.mises.high.value, how, size)),
         Cell(rough(one.mises.error * size)),
         Cell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from heuncli.client_report.parts import Cell, Facts, Grid, Listing, Part, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.report.certain_sums import sums_table
-from heuncli.report.digits import LOADS, rough
+from heuncli.report.digits import rough
 from heuncli.report.heading import heading
 from heuncli.report.text_table import TextColumn
+from heuncli.results_schema import XYZ, kind_of_error
 
 MEANING = (
     "Every motion is integrated a second time, with a thirtieth of the error allowed. The stated errors are twice the "
@@ -20,9 +21,10 @@ AT_REST = (
     "Nothing is integrated: the equations of one instant are solved, and the stated errors are those of rounding. They "
     "tell of the solution of the model, not of how well the model is the machine."
 )
-ESTIMATES: dict[str, tuple[str, ...]] = {"motion": ("m",), **dict.fromkeys(LOADS, ("N", "N·m"))}
-NAMED = {"motion": "places of points", "reactions": "joint loads", "drives": "drives", "foundation": "foundation",
-         "sections": "section loads"}  # fmt: skip
+NAMED = {"reactions": "joints", "drives": "drives", "foundation": "foundation", "sections": "sections"}
+MOTION = ("places of points", "m")
+LOADS = ("N", "N·m")
+CASE = TextColumn("case", "left")
 CERTAIN = "Nothing is open: the laws of rigid bodies determine every load that is reported."
 
 
@@ -39,24 +41,28 @@ def trust_parts(of: Reported) -> list[Part]:
 
 def _errors(of: Reported) -> Grid:
     """The stated errors of all kinds, the largest of all cases."""
+    found: dict[tuple[str, str], tuple[float, str]] = {}
+    for run in of.runs:
+        own = {MOTION: run.page.certain.error("motion", "m")} | _of_loads(run)
+        for key, error in own.items():
+            found[key] = max(found.get(key, (0.0, run.name)), (error, run.name))
     rows = []
-    for kind, units in ESTIMATES.items():
-        for unit in units:
-            worst = max(of.runs, key=lambda run: _error(run, kind, unit))
-            error = _error(worst, kind, unit)
-            shown, size = of.units.of(unit)
-            if error:
-                rows.append([Cell(NAMED[kind]), Cell(shown), Cell(rough(error * size)), Cell(worst.name)])
-    heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±"), TextColumn("case", "left")]
-    if not of.has_cases:
-        heads, rows = heads[:3], [row[:3] for row in rows]
-    return Grid("STATED ERRORS  of all numbers of a kind", heads, rows)
+    for (kind, unit), (error, case) in found.items():
+        shown, size = of.units.of(unit)
+        rows.append([Cell(kind), Cell(shown), Cell(rough(error * size)), *([Cell(case)] if of.has_cases else [])])
+    heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±")]
+    return Grid("STATED ERRORS  of all numbers of a kind", [*heads, *([CASE] if of.has_cases else [])], rows)
 
 
-def _error(run: ReportedRun, kind: str, unit: str) -> float:
-    """The error of a kind in SI; 0 where the run tells nothing of it."""
-    certain = run.page.certain
-    return certain.error(kind, unit) if (kind, unit) in certain.errors else 0.0
+def _of_loads(run: ReportedRun) -> dict[tuple[str, str], float]:
+    """The largest error of each kind of loads and unit that a case tells of, by what they are called."""
+    found: dict[tuple[str, str], float] = {}
+    for path, number in run.kept.numbers.items():
+        block, *name, quantity = [word for word in path.split(".") if word not in XYZ]
+        kind = NAMED.get(kind_of_error(block, ".".join(name), quantity))
+        if kind is not None and number.unit in LOADS:
+            found[kind, number.unit] = max(found.get((kind, number.unit), 0.0), number.error)
+    return found
 
 
 def open_parts(of: Reported) -> list[Part]:
