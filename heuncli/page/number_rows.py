@@ -154,5 +154,3 @@ def _values(section: Mapping[str, Any]) -> Iterator[tuple[str, Array]]:
     for quantity in STRESSES:
         if quantity in section.get("stress", {}):
             yield quantity, np.asarray(section["stress"][quantity])
-
-
