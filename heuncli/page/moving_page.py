@@ -22,7 +22,7 @@ from heuncli.report.table_plans import SECTIONS
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Results
 from heuncli.scenery.machine import machine_of
-from heuncli.scenery.poses import Poses
+from heuncli.scenery.poses import poses_in
 from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
@@ -40,11 +40,6 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     results = results_at(study, frames.times)
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
-    poses = Poses(
-        results.time,
-        {name: body["position"] for name, body in results.bodies.items()},
-        {name: body["rotation"] for name, body in results.bodies.items()},
-    )
     horizon = own.accuracy.get("horizon")
     return {
         "title": shown(own.title),
@@ -57,7 +52,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
         "time": packed(frames.times),
         "marks": list(_marks(own, frames)),
         "length": list(units.of("m")),
-        "scene": scene_of(machine_of(spec), spec, results, poses),
+        "scene": scene_of(machine_of(spec), spec, results, poses_in(results)),
         "blocks": blocks_of(results, labels, certain),
         "blows": [block for k, blow in enumerate(own.impulses[:1]) for block in blow_of(k, blow, own, labels, certain)],
         "sections": sections_of(spec, results, labels, certain),

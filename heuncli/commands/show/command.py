@@ -7,11 +7,12 @@ from pathlib import PurePath
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
-from heuncli.cli.guard import require_other_file
-from heuncli.cli.output import emit
+from heuncli.cli.guard import require_other_file, same_file
+from heuncli.cli.output import emit, save
 from heuncli.cli.solving import overrides, solver_options, warn
 from heuncli.cli.target import require_room
 from heuncli.cli.units import units
+from heuncli.commands.show.moving_glb import moving_glb
 from heuncli.commands.show.request import ShowRequest
 from heuncli.errors import LimitError, Problem
 from heuncli.page.frames import MOST
@@ -24,6 +25,7 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.workflow import solve
 
 ENDINGS = (".html", ".htm")
+GLB = ".glb"
 LEAST_FRAMES, MOST_FRAMES = 2, 5000
 MOST_BODIES = 500  # of a page: more cannot be turned and moved smoothly in a browser
 REPORTS = TABLE_DEFAULT | {"motion"}
@@ -31,31 +33,55 @@ REPORTS = TABLE_DEFAULT | {"motion"}
 
 def main(request: ShowRequest) -> int:
     """Run the command; returns the exit code."""
-    output = _output(request.output)
-    require_other_file(output, [request.spec])
+    output, glb = _output(request), _glb(request)
+    outputs = [(name, option) for name, option in ((output, "-o"), (glb, "--glb")) if name is not None]
+    for name, option in outputs:
+        require_other_file(name, [request.spec], option)
     shown, most = units(request.units), _most(request.frames)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
-    require_other_file(output, [request.spec])
+    for name, option in outputs:
+        require_other_file(name, [request.spec], option)
     _require_few(spec)
     options = replace(solver_options(request), wanted=REPORTS, time_limit=alarm.remaining())
     with placed(spec):
         study = solve(spec, options)
-        page = moving_page(study, shown, most)
+        page = moving_page(study, shown, most) if output is not None else ""
+        moving = moving_glb(study) if glb is not None else b""
     warn(spec, study.results, request.quiet, later=study.later_warnings)
-    emit(page, output)
+    if output is not None:
+        emit(page, output)
+    if glb is not None:
+        save(moving, glb)
     return 0
 
 
-def _output(name: str | None) -> str:
-    """Where the page goes. Raises UsageError, OutputError."""
+def _output(request: ShowRequest) -> str | None:
+    """Where the page goes, if one is wanted. Raises UsageError, OutputError."""
+    name = request.output
     if name is None:
-        message = "where the page goes is not said"
-        raise UsageError(Problem("bad-option", message, hint="-o machine.html; -o - for standard output"))
+        if request.glb is None:
+            message = "where the page goes is not said"
+            raise UsageError(Problem("bad-option", message, hint="-o machine.html; -o - for standard output"))
+        return None
     if name != STDOUT:
         if name and PurePath(name).suffix.lower() not in ENDINGS:
             hint = f"known endings: {', '.join(ENDINGS)}; heun plot draws .svg, .png and .pdf"
             raise UsageError(Problem("bad-option", f"-o {name}: no page is known by that ending", hint=hint))
         require_room(name)
+    return name
+
+
+def _glb(request: ShowRequest) -> str | None:
+    """Where the moving bodies go, if they are wanted. Raises UsageError, OutputError."""
+    name = request.glb
+    if name is None:
+        return None
+    if PurePath(name).suffix.lower() != GLB:
+        message = f"--glb {name}: no glTF in one file is known by that ending"
+        raise UsageError(Problem("bad-option", message, hint=f"known ending: {GLB}"))
+    require_room(name, "--glb")
+    if same_file("/dev/stdout" if request.output == STDOUT else request.output, name):
+        raise UsageError(Problem("bad-option", f"--glb {name}: that is where the page goes", hint="name another file"))
     return name
 
 

@@ -24,7 +24,10 @@ class ShowRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Write the page there: x.html; - for standard output. Must be said.", "FILE"),
+        Option(("--output", "-o"), "Write the page there: x.html; - for standard output.", "FILE"),
+    ] = None
+    glb: Annotated[
+        str | None, Option(("--glb",), "Write the moving bodies there, as animated glTF: x.glb.", "FILE")
     ] = None
     frames: Annotated[
         int | None, Option(("--frames",), "At most so many instants in the page. Default: 600.", "NUMBER")
