@@ -45,7 +45,7 @@ function ofLoad(section, load, count) {
     }
     return { path: load.path, label: load.path, unit: load.unit, style: load.style, low, high };
   };
-  return { path: load.path, label: section.s ? `${load.path} (least and greatest along it)` : load.path, make };
+  return { path: load.path, label: section.s ? `${load.path} (least, greatest)` : load.path, make };
 }
 
 /** All curves there are, made when they are asked for. @param {object} data @returns {{path, label, make: () => Course}[]} */

@@ -100,7 +100,7 @@ function drawPeak(pen, panel, time, course, highest, colours) {
   const [x, y] = [panel.x(time[k]), panel.y(value)];
   ring(pen, x, y, 3, colours.panel, colours.positive, 1.5);
   const right = x > (panel.left + panel.right) / 2;
-  words(pen, written(value, course.style), x + (right ? -6 : 6), y + (highest ? -9 : 9), colours.ink, colours.panel, right ? "right" : "left");
+  words(pen, written(value, course.style), x + (right ? -6 : 6), y + (highest || y > panel.bottom - 16 ? -9 : 9), colours.ink, colours.panel, right ? "right" : "left");
 }
 
 /**

@@ -1,4 +1,4 @@
-"""What a page draws of a machine: its bodies with their poses at all frames, joints, springs, cuts, how it is looked at."""
+"""What a page draws of a machine: its bodies with their poses at all frames, joints, springs; its reach."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.foreign_text import shown
 from heuncli.page.cuts import sections_of
-from heuncli.page.frames import MOST, PageFrames, frames_of
+from heuncli.page.frames import MOST, PageFrames, frames_of, results_at
 from heuncli.page.geometry import scene_of
 from heuncli.page.inlined import whole_page
 from heuncli.page.number_rows import blocks_of, blow_of
@@ -37,7 +37,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     """All that a page knows: plain data, arrays packed."""
     frames = frames_of(study, most)
     own, spec = study.results, study.spec
-    results = own if np.array_equal(frames.times, own.time) else study.resample(frames.times)
+    results = results_at(study, frames.times)
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
     horizon = own.accuracy.get("horizon")

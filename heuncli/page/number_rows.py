@@ -28,7 +28,7 @@ def blocks_of(results: Results, labels: Labels, certain: Certainty) -> list[dict
     series = [item for item in walk(results, labels) if not item.cause]
     plans = [plan for plan in PLANS if plan.kind not in LEFT_OUT and (plan.only is None or plan is AXIS)]
     found = (_block(plan, series, plan.heading(results, labels), labels, certain) for plan in plans)
-    return [block for block in found if block["groups"]]
+    return [block for block in found if block["groups"] or block["zero"]]
 
 
 def blow_of(number: int, blow: Block, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
@@ -90,7 +90,7 @@ def rows_in(series: Sequence[Series], labels: Labels, certain: Certainty) -> Ite
     flat = [row for rows in shown for row in rows]
     styles = iter(family_styles(flat, np.zeros((0, len(flat))), certain))
     for item, rows in zip(series, shown, strict=True):
-        how = [next(styles) for _ in rows][0]
+        how, *_ = [next(styles) for _ in rows]
         yield _row(item, labels, how), any(not is_zero(row, how) for row in rows)
 
 
