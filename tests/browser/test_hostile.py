@@ -1,4 +1,4 @@
-"""What a spec, a file or a table is called is shown as it is written, and nothing of it is ever run or read as marks."""
+"""What a spec or a file is called is shown as it is written: nothing of it is ever run or read as marks."""
 
 from __future__ import annotations
 

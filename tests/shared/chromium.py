@@ -23,7 +23,8 @@ NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chro
 FLAGS = (
     "--headless", "--no-sandbox", "--remote-debugging-pipe", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-extensions",
-    "--disable-dev-shm-usage", "--hide-scrollbars", "--mute-audio", "--force-color-profile=srgb", "about:blank",
+    "--disable-dev-shm-usage", "--disable-smooth-scrolling", "--hide-scrollbars", "--mute-audio",
+    "--force-color-profile=srgb", "about:blank",
 )  # fmt: skip
 PATIENCE = 60.0  # seconds for an answer: not how fast it is, but whether one comes
 OWN = ("file:", "data:", "blob:", "about:")  # addresses that need no network
@@ -271,7 +272,8 @@ class Tab:
         clip = {}
         if selector is not None:
             left, top, width, height = self.box(selector)
-            clip = {"clip": {"x": left, "y": top, "width": width, "height": height, "scale": 1}}
+            x, y = self.evaluate("[scrollX, scrollY]")  # a part is told by its place on the whole page
+            clip = {"clip": {"x": left + x, "y": top + y, "width": width, "height": height, "scale": 1}}
         self.drawn()
         png = base64.b64decode(self.send("Page.captureScreenshot", format="png", **clip)["data"])
         return self.browser.seen(png)
