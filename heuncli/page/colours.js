@@ -12,8 +12,16 @@ export function coloursNow() {
   return found;
 }
 
+const made = new Map();
+
 /** The colours of a body: shades from dark to bright, and one for its edges. @param {number} k @param {boolean} dark */
 export function tints(k, dark) {
+  const key = 2 * (k % HUES.length) + Number(dark);
+  if (!made.has(key)) made.set(key, mixed(k, dark));
+  return made.get(key);
+}
+
+function mixed(k, dark) {
   const [hue, rich] = HUES[k % HUES.length];
   const [low, high] = dark ? [24, 52] : [52, 88];
   const shades = [];

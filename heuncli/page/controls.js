@@ -10,8 +10,9 @@ import { arrowChoices } from "./wrenches.js";
 /** How opaque bodies are. */
 const LOOKS = [[1, "solid"], [0.35, "glass"], [0, "edges"]];
 const MANY_NAMES = 7;
-const MOST_BUTTONS = 16;
+const MOST_BUTTONS = 8;
 const STEP = 1.15;
+const TRIED = 12;
 const SIZES = 1.2; // by how much a step of the arrow size lengthens
 
 /** What is chosen on the page beside the frame. */
@@ -26,7 +27,8 @@ export class Chosen {
     this.values = true;
     this.look = 1;
     this.size = 1;
-    this.choice = this.choices[0] ?? null;
+    const blow = data.count === 1 ? this.choices.find((choice) => choice.key === "blow") : null;
+    this.choice = blow ?? this.choices[0] ?? null;
     this.section = data.sections.find((section) => section.loads.length && section.s) ?? data.sections.find((section) => section.loads.length) ?? null;
     this.load = this.section && this.governing();
   }
@@ -41,6 +43,18 @@ export class Chosen {
   /** The load that is drawn, or null. */
   get drawn() {
     return this.section && this.load ? { section: this.section, load: this.load, cut: this.section.chosen ?? 0 } : null;
+  }
+
+  /** The path of the curve that is shown first: of a joint if one is known and varies, else of whatever does. */
+  telling() {
+    const joints = this.courses.filter((course) => course.path.startsWith("joints."));
+    const some = [...joints.slice(0, TRIED), ...this.courses.slice(0, TRIED)];
+    const found = some.find((course) => {
+      course.made ??= course.make();
+      const known = course.made.high.filter(Number.isFinite);
+      return known.length > 1 && known.some((value) => value !== known[0]);
+    });
+    return (found ?? some[0])?.path ?? "";
   }
 
   /** The curve of a path. @param {string} path */
@@ -130,6 +144,7 @@ export function listenToDrawn(chosen, changed) {
     changed();
   });
   fill(by("reactions"), [...chosen.choices.map((choice) => [choice.key, choice.label]), ["", "none"]]);
+  by("reactions").value = chosen.choice?.key ?? "";
   by("reactions").addEventListener("change", () => {
     chosen.choice = chosen.choices.find((choice) => choice.key === by("reactions").value) ?? null;
     changed();
@@ -178,8 +193,7 @@ export function listenToSections(chosen, changed) {
 export function listenToCurve(chosen, player, changed, panel) {
   const select = by("path");
   fill(select, chosen.courses.map((course) => [course.path, course.label]));
-  const first = chosen.load?.path ?? chosen.courses.find((course) => course.path.startsWith("joints."))?.path;
-  chosen.setCourse(first ?? "");
+  chosen.setCourse(chosen.load?.path ?? chosen.telling());
   if (chosen.course) select.value = chosen.course.path;
   else by("over").hidden = true;
   select.addEventListener("change", () => {

@@ -120,6 +120,9 @@ export function drawCurve(canvas, data, course, frame, colours) {
   }
   drawValues(pen, panel, time, course.high, colours.positive, []);
   if (course.low !== course.high) drawValues(pen, panel, time, course.low, colours.negative, [6, 3]);
+  if (!course.high.some(Number.isFinite)) {
+    words(pen, "open throughout", (panel.left + panel.right) / 2, panel.top + 24, colours.faint, colours.panel, "center");
+  }
   drawPeak(pen, panel, time, course, true, colours);
   drawPeak(pen, panel, time, course, false, colours);
   const x = panel.x(time[frame]);

@@ -62,21 +62,12 @@ function tellCurve(course, frame) {
   by("curve").setAttribute("aria-label", `${course.label} over time; now ${value} ${course.unit}`);
 }
 
-/** Let the view fill its canvas, as soon as that has a size. */
-function fit(view) {
-  const { clientWidth: width, clientHeight: height } = by("machine");
-  Object.assign(view, { width, height });
-  view.fit();
-  return width > 0;
-}
-
 /** Begin. */
 function begin() {
   const data = readData(by("data").textContent);
   let waiting = false;
   let written0 = 0;
   let panel = null;
-  let fitted = false;
   const colours = { now: coloursNow() };
   const changed = () => {
     if (!waiting) requestAnimationFrame(draw);
@@ -89,7 +80,6 @@ function begin() {
 
   function draw() {
     waiting = false;
-    if (!fitted) fitted = fit(view);
     const { frame, share } = player;
     const { names, values, look, size, choice } = chosen;
     drawMachine(by("machine"), data, view, { frame, share, names, values, look, size, choice, load: chosen.drawn }, colours.now);
