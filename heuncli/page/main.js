@@ -33,7 +33,9 @@ function signsOf(chosen, data) {
   }
   if (section && load) {
     const [unit, size] = data.length;
-    parts.push(`Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`);
+    parts.push(
+      `Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`,
+    );
     const s = section.s?.[section.chosen ?? 0];
     by("place").textContent = s === undefined ? "" : `s = ${short(s * size)} ${unit}`;
   }
@@ -82,7 +84,13 @@ function begin() {
     waiting = false;
     const { frame, share } = player;
     const { names, values, look, size, choice } = chosen;
-    drawMachine(by("machine"), data, view, { frame, share, names, values, look, size, choice, load: chosen.drawn }, colours.now);
+    drawMachine(
+      by("machine"),
+      data,
+      view,
+      { frame, share, names, values, look, size, choice, load: chosen.drawn },
+      colours.now,
+    );
     if (data.count > 1 && chosen.course) {
       panel = drawCurve(by("curve"), data, chosen.course, frame, colours.now);
       tellCurve(chosen.course, frame);

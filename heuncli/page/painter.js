@@ -1,6 +1,6 @@
-/** @file What is nearer hides what is farther: faces, balls and lines gathered, sorted by how near they are, painted in turn. */
+/** @file What is nearer hides what is farther: faces, balls and lines, gathered and then painted, the farthest first. */
 
-const WIDER = 0.35; // pixels: by how much a face is painted beyond its corners, so that no seam shows between neighbours
+const WIDER = 0.35; // pixels: how far beyond its corners a face is painted, so that no seam shows beside it
 
 /**
  * @typedef {object} Item

@@ -51,8 +51,10 @@ export function drawMachine(canvas, data, view, shown, colours) {
   painter.paint(shown.look);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
   for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours);
-  if (shown.load) drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
-  if (shown.names) drawNames(pen, scene, poses, view, colours, shown.values && shown.choice?.key.startsWith("joints.force"));
+  if (shown.load)
+    drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
+  if (shown.names)
+    drawNames(pen, scene, poses, view, colours, shown.values && shown.choice?.key.startsWith("joints.force"));
   let line = 0;
   if (shown.choice) {
     drawArrows(pen, view, poses, shown.choice, shown.frame, colours, shown.size, shown.values);

@@ -71,7 +71,17 @@ export function arrow(pen, from, to, toward, colour, paper, heads = 1, dash = []
     const [x, y] = [to[0] - 0.75 * k * head * ux, to[1] - 0.75 * k * head * uy];
     const [bx, by] = [x - head * ux, y - head * uy];
     const w = 0.42 * head;
-    shape(pen, [[x, y], [bx - w * uy, by + w * ux], [bx + w * uy, by - w * ux]], colour, paper, 0.8);
+    shape(
+      pen,
+      [
+        [x, y],
+        [bx - w * uy, by + w * ux],
+        [bx + w * uy, by - w * ux],
+      ],
+      colour,
+      paper,
+      0.8,
+    );
   }
 }
 
@@ -81,7 +91,23 @@ function endOn(pen, [x, y], toward, colour, paper) {
   if (toward > 0) {
     ring(pen, x, y, 2.2, colour, colour, 1);
   } else {
-    polyline(pen, [[x - 4.5, y - 4.5], [x + 4.5, y + 4.5]], colour, 2);
-    polyline(pen, [[x - 4.5, y + 4.5], [x + 4.5, y - 4.5]], colour, 2);
+    polyline(
+      pen,
+      [
+        [x - 4.5, y - 4.5],
+        [x + 4.5, y + 4.5],
+      ],
+      colour,
+      2,
+    );
+    polyline(
+      pen,
+      [
+        [x - 4.5, y + 4.5],
+        [x + 4.5, y - 4.5],
+      ],
+      colour,
+      2,
+    );
   }
 }

@@ -22,10 +22,26 @@ function onScreen(view, v) {
 
 /** Ground: a line with strokes beyond it; u along it, n away from what stands on it. */
 function hatched(pen, [x, y], u, n, half, colours) {
-  polyline(pen, [[x - half * u[0], y - half * u[1]], [x + half * u[0], y + half * u[1]]], colours.ink, 1.6);
+  polyline(
+    pen,
+    [
+      [x - half * u[0], y - half * u[1]],
+      [x + half * u[0], y + half * u[1]],
+    ],
+    colours.ink,
+    1.6,
+  );
   for (let t = -half + 3; t <= half; t += 5) {
     const [bx, by] = [x + t * u[0], y + t * u[1]];
-    polyline(pen, [[bx, by], [bx + 5 * (n[0] - 0.7 * u[0]), by + 5 * (n[1] - 0.7 * u[1])]], colours.ink, 1);
+    polyline(
+      pen,
+      [
+        [bx, by],
+        [bx + 5 * (n[0] - 0.7 * u[0]), by + 5 * (n[1] - 0.7 * u[1])],
+      ],
+      colours.ink,
+      1,
+    );
   }
 }
 
@@ -33,7 +49,10 @@ function hatched(pen, [x, y], u, n, half, colours) {
 function atPoint(pen, view, joint, at, axis, grounded, colours) {
   const [x, y] = at;
   if (grounded) {
-    const n = onScreen(view, view.up.map((c) => -c)) || [0, 1];
+    const n = onScreen(
+      view,
+      view.up.map((c) => -c),
+    ) || [0, 1];
     const u = [-n[1], n[0]];
     const foot = [x + STAND * n[0], y + STAND * n[1]];
     const legs = [-8, 8].map((t) => [foot[0] + t * u[0], foot[1] + t * u[1]]);
@@ -43,18 +62,53 @@ function atPoint(pen, view, joint, at, axis, grounded, colours) {
   const along = joint.kind === "pin" && onScreen(view, axis);
   if (along) {
     const reach = 11;
-    polyline(pen, [[x - reach * along[0], y - reach * along[1]], [x + reach * along[0], y + reach * along[1]]], colours.ink, 2);
+    polyline(
+      pen,
+      [
+        [x - reach * along[0], y - reach * along[1]],
+        [x + reach * along[0], y + reach * along[1]],
+      ],
+      colours.ink,
+      2,
+    );
   }
   if (AT_POINT[joint.kind] === "weld") {
-    shape(pen, [[x - 5, y - 5], [x + 5, y - 5], [x + 5, y + 5], [x - 5, y + 5]], colours.ink, colours.paper, 1);
+    shape(
+      pen,
+      [
+        [x - 5, y - 5],
+        [x + 5, y - 5],
+        [x + 5, y + 5],
+        [x - 5, y + 5],
+      ],
+      colours.ink,
+      colours.paper,
+      1,
+    );
     return;
   }
   ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
   if (joint.kind === "ball") ring(pen, x, y, R - 2.8, colours.ink, colours.ink, 1);
   if (joint.kind === "pin") ring(pen, x, y, 1.2, colours.ink, colours.ink, 1);
   if (joint.kind === "universal") {
-    polyline(pen, [[x - R, y], [x + R, y]], colours.ink, 1.5);
-    polyline(pen, [[x, y - R], [x, y + R]], colours.ink, 1.5);
+    polyline(
+      pen,
+      [
+        [x - R, y],
+        [x + R, y],
+      ],
+      colours.ink,
+      1.5,
+    );
+    polyline(
+      pen,
+      [
+        [x, y - R],
+        [x, y + R],
+      ],
+      colours.ink,
+      1.5,
+    );
   }
 }
 
@@ -83,7 +137,15 @@ function sliding(pen, view, joint, from, at, axis, grounded, colours) {
     const along = joint.kind === "plane" ? planeLine(view, axis) : axis;
     if (along) rails(pen, view, at, along, grounded, colours, joint.kind === "plane" ? [R + 2] : [R + 2, -R - 2]);
     ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8);
-    polyline(pen, [[at[0] - 2 * across[0], at[1] - 2 * across[1]], [at[0] + 2 * across[0], at[1] + 2 * across[1]]], colours.ink, 1.5);
+    polyline(
+      pen,
+      [
+        [at[0] - 2 * across[0], at[1] - 2 * across[1]],
+        [at[0] + 2 * across[0], at[1] + 2 * across[1]],
+      ],
+      colours.ink,
+      1.5,
+    );
     return;
   }
   rails(pen, view, at, axis, grounded, colours, [9, -9]);
@@ -94,7 +156,9 @@ function sliding(pen, view, joint, from, at, axis, grounded, colours) {
 
 /** A direction in a plane that lies across the screen, by its normal. */
 function planeLine(view, normal) {
-  const v = [0, 1, 2].map((i) => normal[(i + 1) % 3] * view.toward[(i + 2) % 3] - normal[(i + 2) % 3] * view.toward[(i + 1) % 3]);
+  const v = [0, 1, 2].map(
+    (i) => normal[(i + 1) % 3] * view.toward[(i + 2) % 3] - normal[(i + 2) % 3] * view.toward[(i + 1) % 3],
+  );
   return lengthOf(v) > 0.1 ? v : null;
 }
 
@@ -149,9 +213,18 @@ export function drawCorner(pen, view, gravity, colours) {
   ["x", "y", "z"].forEach((name, k) => {
     const axis = [0, 1, 2].map((i) => (i === k ? 1 : 0));
     const [dx, dy] = view.direct(axis).map((c) => (30 * c) / view.scale);
-    polyline(pen, [[x, y], [x + dx, y + dy]], colours.ink, 1.6);
+    polyline(
+      pen,
+      [
+        [x, y],
+        [x + dx, y + dy],
+      ],
+      colours.ink,
+      1.6,
+    );
     const size = Math.hypot(dx, dy) || 1;
-    if (size > 6) words(pen, name, x + dx * (1 + 9 / size), y + dy * (1 + 9 / size), colours.ink, colours.panel, "center");
+    if (size > 6)
+      words(pen, name, x + dx * (1 + 9 / size), y + dy * (1 + 9 / size), colours.ink, colours.panel, "center");
   });
   if (lengthOf(gravity) > 0) {
     const [dx, dy, near] = view.direct(unit(gravity)).map((c) => (30 * c) / view.scale);
@@ -164,6 +237,22 @@ export function drawCorner(pen, view, gravity, colours) {
 /** A point of the ground. */
 export function drawGroundPoint(pen, view, at, colours) {
   const [x, y] = view.project(at);
-  polyline(pen, [[x - 4, y], [x + 4, y]], colours.faint, 1.2);
-  polyline(pen, [[x, y - 4], [x, y + 4]], colours.faint, 1.2);
+  polyline(
+    pen,
+    [
+      [x - 4, y],
+      [x + 4, y],
+    ],
+    colours.faint,
+    1.2,
+  );
+  polyline(
+    pen,
+    [
+      [x, y - 4],
+      [x, y + 4],
+    ],
+    colours.faint,
+    1.2,
+  );
 }
