@@ -1,4 +1,4 @@
-/** @file The colours of the page, those of its style, light or dark; of bodies tints that the colour-blind tell apart. */
+/** @file The colours of the page, those of its style, light or dark; of bodies tints that are told apart by all. */
 
 const NAMES = ["paper", "ink", "faint", "line", "panel", "accent", "positive", "negative", "force", "moment"];
 const HUES = [

@@ -1,4 +1,4 @@
-/** @file What is nearer hides what is farther: faces, balls and lines, gathered and then painted, the farthest first. */
+/** @file What is nearer hides what is farther: faces, balls and lines, gathered, then painted, the farthest first. */
 
 const WIDER = 0.35; // pixels: how far beyond its corners a face is painted, so that no seam shows beside it
 
