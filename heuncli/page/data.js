@@ -44,8 +44,8 @@ export function readData(text) {
     body.attitudes = places(body.attitudes);
     body.lines = body.lines.map(places);
     for (const surface of body.surfaces) {
+      if (surface.ball) continue;
       surface.corners = places(surface.corners);
-      surface.edges = surface.edges.map(places);
       surface.faces = data.scene.topologies[surface.faces];
     }
   }

@@ -142,7 +142,8 @@ export class NumberTable {
       if (section.s) {
         const [unit, size] = this.data.length;
         const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} what acts there` : "";
-        section.spoken.textContent = `${section.note}; value: at s = ${short(section.s[section.chosen] * size)} ${unit}${side}`;
+        const place = `s = ${short(section.s[section.chosen] * size)} ${unit}`;
+        section.spoken.textContent = `${section.note}; value: at ${place}${side}`;
       }
     }
     for (const cell of this.cells) cell.show(frame);
