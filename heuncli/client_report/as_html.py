@@ -53,7 +53,7 @@ def escaped(text: str) -> str:
     return escaped_for_xml(shown(text)).replace('"', "&quot;").replace("'", "&#39;")
 
 
-def element(tag: str, content: str = "", **attributes: str) -> str:
+def element(tag: str, content: str = "", /, **attributes: str) -> str:
     """An element of content that is markup already; attributes are escaped here, `class_` is `class`."""
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"' for key, value in attributes.items() if value
