@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.client_report.parts import (
-    Cell,
     Chapter,
     ClientReport,
     Drawing,
@@ -19,6 +18,7 @@ from heuncli.client_report.parts import (
     Grid,
     Listing,
     Part,
+    ReportCell,
     Sentence,
     Verbatim,
 )
@@ -106,7 +106,7 @@ def _grid(part: Grid) -> str:
     return element("div", caption + "\n" + table + (element("ul", notes, class_="notes") if notes else ""))
 
 
-def _row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
+def _row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
     if isinstance(row, str):
         name, _, rest = row.partition("  ")
         text = escaped(name) + (" " + element("small", escaped(rest)) if rest else "")
@@ -115,7 +115,7 @@ def _row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
     return element("tr", "".join(cells), class_="begins" if row[0].text else "")
 
 
-def _cell(cell: Cell, kind: str) -> str:
+def _cell(cell: ReportCell, kind: str) -> str:
     text = escaped(cell.text)
     kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG))))
     return element("td", element("strong", text) if cell.governs else text, class_=kinds)

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from heuncli.client_report.parts import (
-    Cell,
     ClientReport,
     Drawing,
     Facts,
     Grid,
     Listing,
     Part,
+    ReportCell,
     Sentence,
     Verbatim,
 )
@@ -88,7 +88,7 @@ def _across(row: str) -> str:
     return f"**{escaped(name)}**" + (f" {escaped(rest)}" if rest else "")
 
 
-def _cell(cell: Cell) -> str:
+def _cell(cell: ReportCell) -> str:
     return f"**{escaped(cell.text)}**" if cell.governs and cell.text else escaped(cell.text)
 
 

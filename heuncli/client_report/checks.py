@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.client_report.parts import Cell, Grid, Part, Sentence
+from heuncli.client_report.parts import Grid, Part, ReportCell, Sentence
 from heuncli.client_report.reported import AS_IT_STANDS, Reported
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.outcomes import Outcome
@@ -26,9 +26,9 @@ def check_parts(of: Reported) -> list[Part]:
     return [Grid("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
 
 
-def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[Cell]:
+def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[ReportCell]:
     """The cells of one; what fails stands out."""
-    verdict = Cell(HOLDS if outcome.passed else FAILS, not outcome.passed)
-    case = [Cell(outcome.case or AS_IT_STANDS)] if cases else []
+    verdict = ReportCell(HOLDS if outcome.passed else FAILS, not outcome.passed)
+    case = [ReportCell(outcome.case or AS_IT_STANDS)] if cases else []
     words = (outcome.of, unit_of(outcome.of, of.spec), outcome.when, outcome.expected, outcome.found, outcome.allowed)
-    return [Cell(str(outcome.line)), *case, *map(Cell, words), verdict]
+    return [ReportCell(str(outcome.line)), *case, *map(ReportCell, words), verdict]

@@ -19,7 +19,7 @@ LEAST, GREATEST = "least", "greatest"
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
 
 
-class End(NamedTuple):
+class Reached(NamedTuple):
     """An extreme of one case: its value in SI or the word in its place, its instant, and where it is along a run."""
 
     value: float | str
@@ -33,8 +33,8 @@ class Ends(NamedTuple):
     parts_open: whether it is open at some of the instants.
     """
 
-    low: End
-    high: End
+    low: Reached
+    high: Reached
     error: float
     unit: str
     parts_open: bool
@@ -58,7 +58,7 @@ def ends_of(run: ReportedRun, path: str) -> Ends | None:
     )
 
 
-def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> End:
+def _placed(end: Reached, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> Reached:
     """An extreme along a run of cuts with its place; of one that is the same at all instants no place is kept."""
     if end.place is not None or not isinstance(end.value, float):
         return end
@@ -73,8 +73,8 @@ def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.i
 
 
 def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
-    low = End(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
-    high = End(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
+    low = Reached(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
+    high = Reached(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
     is_open = OPEN in (*lowest.values.values(), *highest.values.values())
     parts = is_open and isinstance(low.value, float) and isinstance(high.value, float)
     return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts)

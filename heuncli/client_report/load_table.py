@@ -18,7 +18,7 @@ from heuncli.client_report.extremes import (
     style_of,
     text_of,
 )
-from heuncli.client_report.parts import Cell, Grid, Part, Sentence
+from heuncli.client_report.parts import Grid, Part, ReportCell, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
@@ -127,7 +127,7 @@ def grid(
     """The table of some groups; along: with the places of extremes along runs of cuts."""
     governs = governing(of)
     shown = _shown(of, groups, governs)
-    rows: list[Sequence[Cell] | str] = []
+    rows: list[Sequence[ReportCell] | str] = []
     for group in groups:
         rows += [group.title, *(_lines(of, group, shown, governs, along=along))]
     if len(shown) < len(of.runs):
@@ -190,7 +190,7 @@ def _written(of: Reported, group: LoadGroup) -> Iterator[WrittenRow]:
 
 def _lines(
     of: Reported, group: LoadGroup, shown: set[str], governs: Governing, *, along: bool
-) -> Iterator[Sequence[Cell] | str]:
+) -> Iterator[Sequence[ReportCell] | str]:
     """The lines of a group; what is 0 or open throughout takes none."""
     written = list(_written(of, group))
     told = [one for one in written if one.words not in ({"0"}, {OPEN})]
@@ -199,16 +199,22 @@ def _lines(
     for one in told:
         yield from _of_cases(of, one, shown, governs, along=along)
     if opened := [one.row.label for one in written if one.words == {OPEN}]:
-        columns = _columns(of, along=along)
-        first = next(i for i, column in enumerate(columns) if column.head in ("least", "value"))
-        yield [Cell(", ".join(opened)), *[Cell("")] * (first - 1), Cell(OPEN), *[Cell("")] * (len(columns) - first - 1)]
+        yield _opened(_columns(of, along=along), opened)
     elif not told:
         yield "0 throughout"
 
 
+def _opened(columns: Sequence[TextColumn], labels: Sequence[str]) -> list[ReportCell]:
+    """The line of what is open throughout: the word stands where the numbers do."""
+    heads = [column.head for column in columns]
+    first = next(heads.index(word) for word in ("least", "value") if word in heads)
+    words = {0: ", ".join(labels), first: OPEN}
+    return [ReportCell(words.get(i, "")) for i in range(len(columns))]
+
+
 def _of_cases(
     of: Reported, one: WrittenRow, shown: set[str], governs: Governing, *, along: bool
-) -> Iterator[Sequence[Cell]]:
+) -> Iterator[Sequence[ReportCell]]:
     """A line a case; the first has the name of the number and its unit."""
     low, high = governs.low(one.row.path), governs.high(one.row.path)
     several = len(of.runs) > 1
@@ -221,7 +227,7 @@ def _of_cases(
         error = rough(ends.error * one.size)
         cells = _cells(of, run, ends, one.texts[run.name], bold, along=along)
         label = lead[0] + PARTLY * ends.parts_open
-        yield (Cell(label), Cell(lead[1]), *map(Cell, case), *cells, Cell(error))
+        yield (ReportCell(label), ReportCell(lead[1]), *map(ReportCell, case), *cells, ReportCell(error))
         lead = ["", ""]
 
 
@@ -235,21 +241,21 @@ def _is(bound: Bound | None, run: ReportedRun) -> bool:
 
 def _cells(
     of: Reported, run: ReportedRun, ends: Ends, texts: tuple[str, str], bold: tuple[bool, bool], *, along: bool
-) -> Iterator[Cell]:
+) -> Iterator[ReportCell]:
     """The cells of the lowest and the highest, each with its place and its instant."""
     steady = texts[0] == texts[1]
     if not (along or timed(of)):
-        yield Cell(texts[0], any(bold))
+        yield ReportCell(texts[0], any(bold))
         return
     for k, end in enumerate((ends.low, ends.high)):
-        yield Cell(texts[k], bold[k])
+        yield ReportCell(texts[k], bold[k])
         if along:
-            yield Cell("" if steady else place_text(end.place, of.units, named=False))
+            yield ReportCell("" if steady else place_text(end.place, of.units, named=False))
         if timed(of):
-            yield Cell("" if steady or texts[k] in (OPEN, UNKNOWN) else instant_text(end.at, run))
+            yield ReportCell("" if steady or texts[k] in (OPEN, UNKNOWN) else instant_text(end.at, run))
 
 
-def _notes(of: Reported, rows: Sequence[Sequence[Cell] | str]) -> Iterator[str]:
+def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator[str]:
     """What the signs of a table mean."""
     cells = [cell for row in rows if not isinstance(row, str) for cell in row]
     words = {cell.text for cell in cells}

@@ -32,7 +32,7 @@ class Listing(NamedTuple):
     items: Sequence[str]
 
 
-class Cell(NamedTuple):
+class ReportCell(NamedTuple):
     """A cell of a table; governs: whether no other of its kind is larger."""
 
     text: str
@@ -44,7 +44,7 @@ class Grid(NamedTuple):
 
     caption: str
     columns: Sequence[TextColumn]
-    rows: Sequence[Sequence[Cell] | str]
+    rows: Sequence[Sequence[ReportCell] | str]
     notes: Sequence[str] = ()
 
 
@@ -82,5 +82,5 @@ class ClientReport(NamedTuple):
 
 def grid_of(table: TextTable, caption: str | None = None) -> Grid:
     """A table as `heun run` prints it; caption: in the place of its heading."""
-    rows = [row if isinstance(row, str) else tuple(map(Cell, row)) for row in table.rows]
+    rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]
     return Grid(table.heading if caption is None else caption, table.columns, rows, table.notes)

@@ -15,7 +15,7 @@ from heuncli.client_report.extremes import (
     text_of,
 )
 from heuncli.client_report.load_table import LoadGroup, LoadRow, grid, timed
-from heuncli.client_report.parts import Cell, Drawing, Grid, Part
+from heuncli.client_report.parts import Drawing, Grid, Part, ReportCell
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured
@@ -108,7 +108,7 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
     yield Grid("STRESS  the largest of each section", heads, rows, notes)
 
 
-def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[Cell]:
+def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[ReportCell]:
     """The line of a section."""
     size = of.units.of("Pa")[1]
     how = style_of([each.mises for each in found], of.runs[0], size)
@@ -117,14 +117,16 @@ def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bo
     steady = end.place is None and is_steady(one.mises, how, size)
     strength = one.run.study.spec.sections[one.name].strength
     return [
-        Cell(one.name),
-        *([Cell(one.run.told)] if of.has_cases else []),
-        Cell(place_text(end.place, of.units, named=False)),
-        *([Cell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
-        Cell(text_of(one.mises.high.value, how, size)),
-        Cell(rough(one.mises.error * size)),
-        Cell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
-        Cell("" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None),
+        ReportCell(one.name),
+        *([ReportCell(one.run.told)] if of.has_cases else []),
+        ReportCell(place_text(end.place, of.units, named=False)),
+        *([ReportCell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
+        ReportCell(text_of(one.mises.high.value, how, size)),
+        ReportCell(rough(one.mises.error * size)),
+        ReportCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
+        ReportCell(
+            "" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None
+        ),
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.client_report.parts import Cell, Facts, Grid, Listing, Part, Sentence
+from heuncli.client_report.parts import Facts, Grid, Listing, Part, ReportCell, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import rough
@@ -49,7 +49,14 @@ def _errors(of: Reported) -> Grid:
     rows = []
     for (kind, unit), (error, case) in found.items():
         shown, size = of.units.of(unit)
-        rows.append([Cell(kind), Cell(shown), Cell(rough(error * size)), *([Cell(case)] if of.has_cases else [])])
+        rows.append(
+            [
+                ReportCell(kind),
+                ReportCell(shown),
+                ReportCell(rough(error * size)),
+                *([ReportCell(case)] if of.has_cases else []),
+            ]
+        )
     heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±")]
     return Grid("STATED ERRORS  of all numbers of a kind", [*heads, *([CASE] if of.has_cases else [])], rows)
 

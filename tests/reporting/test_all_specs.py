@@ -13,17 +13,12 @@ from heuncli.client_report.contents import report_of
 from heuncli.client_report.reported import Reported
 from heuncli.commands.reporting.cases import reported
 from heuncli.commands.reporting.request import ReportRequest
-from tests.shared.page_reader import PageReader
+from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"
 NAMES = [pytest.param(path.stem, marks=pytest.mark.heavy) for path in sorted(FOLDER.glob("*.yaml"))]
 NO_NUMBER = re.compile(r"\b(nan|NaN|inf|Infinity|None)\b")
 UNIT = re.compile(r"\[[^\]]+\]")
-OURS = {
-    "html", "head", "meta", "title", "style", "body", "main", "header", "nav", "ol", "ul", "li", "a", "section", "h1",
-    "h2", "h3", "small", "p", "dl", "dt", "dd", "div", "table", "thead", "tbody", "tr", "th", "td", "strong", "code",
-    "figure", "figcaption", "svg", "desc", "rect", "polyline", "polygon", "circle", "text",
-}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", NAMES)

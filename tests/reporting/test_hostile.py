@@ -7,9 +7,8 @@ from pathlib import Path
 from markdown_it import MarkdownIt
 
 from heuncli.foreign_text import shown
-from tests.reporting.test_all_specs import OURS
 from tests.shared.command import TURNED, Heun
-from tests.shared.page_reader import PageReader
+from tests.shared.page_reader import OURS, PageReader
 
 HOSTILE = (
     "</title></style><script>alert(1)</script><img src=x onerror=alert(1)> & &lt; \" ' ]]> --> `x` **b** _i_ | "

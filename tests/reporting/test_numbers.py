@@ -48,10 +48,10 @@ def test_extremes_of_a_motion_are_those_of_run(heun: Heun) -> None:
             group = row[0]
         else:
             found[path_of(group, row[0], block)] = (row[2], row[3], row[4], row[5])
-    asked = [f"{how} {path}" for path in found for how in ("min", "max")]
+    assert len(found) > 20
+    asked = [f"{how} {path}" for path in [*found][::5] for how in ("min", "max")]
     words = [word for one in asked for word in ("--measure", one)]
     measured = json.loads(heun("run", spec, "--format", "json", *words, "-q").stdout)
-    assert len(found) > 20
     for one, told in zip(asked, measured, strict=True):
         low, low_at, high, high_at = found[one.split()[1]]
         text, at = (low, low_at) if one.startswith("min") else (high, high_at)
