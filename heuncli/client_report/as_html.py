@@ -15,10 +15,10 @@ from heuncli.client_report.parts import (
     ClientReport,
     Drawing,
     Facts,
-    Grid,
     Listing,
     Part,
     ReportCell,
+    ReportTable,
     Sentence,
     Verbatim,
 )
@@ -90,7 +90,7 @@ def _listing(part: Listing) -> str:
     return title + element("ul", "".join(element("li", escaped(item)) for item in part.items))
 
 
-def _grid(part: Grid) -> str:
+def _grid(part: ReportTable) -> str:
     """A table; its head is repeated on every page that it goes over."""
     kinds = ["left" if column.align == "left" else "" for column in part.columns]
     heads = [element("th", escaped(column.head), scope="col", class_=kind)
@@ -134,5 +134,5 @@ def _verbatim(part: Verbatim) -> str:
 
 
 WRITTEN: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _sentence, Facts: _facts, Listing: _listing, Grid: _grid, Drawing: _drawing, Verbatim: _verbatim,
+    Sentence: _sentence, Facts: _facts, Listing: _listing, ReportTable: _grid, Drawing: _drawing, Verbatim: _verbatim,
 }  # fmt: skip

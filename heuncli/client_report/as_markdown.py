@@ -10,10 +10,10 @@ from heuncli.client_report.parts import (
     ClientReport,
     Drawing,
     Facts,
-    Grid,
     Listing,
     Part,
     ReportCell,
+    ReportTable,
     Sentence,
     Verbatim,
 )
@@ -69,7 +69,7 @@ def _listing(part: Listing) -> str:
     return title + "\n".join(f"- {line(item)}" for item in part.items)
 
 
-def _grid(part: Grid) -> str:
+def _grid(part: ReportTable) -> str:
     """A table under its heading; a line across is a row with a bold first cell."""
     name, _, rest = part.caption.partition("  ")
     blocks = [f"### {line(name)}", *([line(rest)] if rest else [])]
@@ -107,5 +107,5 @@ def _verbatim(part: Verbatim) -> str:
 
 
 WRITTEN: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _sentence, Facts: _facts, Listing: _listing, Grid: _grid, Drawing: _drawing, Verbatim: _verbatim,
+    Sentence: _sentence, Facts: _facts, Listing: _listing, ReportTable: _grid, Drawing: _drawing, Verbatim: _verbatim,
 }  # fmt: skip

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.client_report.parts import Grid, Part, ReportCell, Sentence
+from heuncli.client_report.parts import Part, ReportCell, ReportTable, Sentence
 from heuncli.client_report.reported import AS_IT_STANDS, Reported
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.outcomes import Outcome
@@ -23,7 +23,7 @@ def check_parts(of: Reported) -> list[Part]:
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
     rows = [_row(of, outcome, cases=cases) for outcome in of.outcomes]
     failed = [f"{outcome.name}: {outcome.failure}" for outcome in of.outcomes if outcome.failure is not None]
-    return [Grid("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
+    return [ReportTable("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
 
 
 def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[ReportCell]:

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.client_report.extremes import Spread, spread_of
+from heuncli.client_report.extremes import GreatestOfCases, spread_of
 from heuncli.client_report.parts import Facts, Part, Sentence
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
@@ -108,7 +108,7 @@ def _known(of: Reported, block: str) -> str:
     return " that is known" if is_open else ""
 
 
-def _of_sections(of: Reported, quantity: str) -> list[Spread]:
+def _of_sections(of: Reported, quantity: str) -> list[GreatestOfCases]:
     names = of.runs[0].results.sections
     found = [spread_of(of, f"sections.{name}.stress.{quantity}", name) for name in names]
     return [spread for spread in found if spread is not None]

@@ -18,7 +18,7 @@ from heuncli.client_report.extremes import (
     style_of,
     text_of,
 )
-from heuncli.client_report.parts import Grid, Part, ReportCell, Sentence
+from heuncli.client_report.parts import Part, ReportCell, ReportTable, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
@@ -42,7 +42,7 @@ TOO_MANY = "{} of {}: magnitudes alone; heun run SPEC --format csv has the compo
 FEW_CASES = "of {} load cases those that govern a number; heun run SPEC --case all has all"
 
 
-class LoadRow(NamedTuple):
+class LoadNumber(NamedTuple):
     """A number of the results: its label, its path, and to which family of numbers it belongs.
 
     even: a magnitude, of which the least governs nothing; vector: of which it is a component or the magnitude.
@@ -59,7 +59,7 @@ class LoadGroup(NamedTuple):
     """The numbers of one thing, under its title."""
 
     title: str
-    rows: Sequence[LoadRow]
+    rows: Sequence[LoadNumber]
 
 
 def load_tables(of: Reported) -> list[Part]:
@@ -101,7 +101,7 @@ def _things(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
         yield from ((f"{word} {name}", f"foundation.{part}.{name}") for name in block.get(part, {}))
 
 
-def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[LoadRow]:
+def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[LoadNumber]:
     """The numbers of one thing: of a vector its components and its magnitude."""
     numbers = of.runs[0].kept.numbers
     for quantity in quantities:
@@ -110,20 +110,20 @@ def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[Load
         vector = all(part in numbers for part in parts)
         for axis, part in zip(XYZ, parts, strict=True):
             if vector:
-                yield LoadRow(short(f"{quantity}.{axis}"), part, family, vector=path)
+                yield LoadNumber(short(f"{quantity}.{axis}"), part, family, vector=path)
         if vector:
-            yield LoadRow(WHOLE[quantity], path, family, even=True, vector=path)
+            yield LoadNumber(WHOLE[quantity], path, family, even=True, vector=path)
         elif path in numbers:
-            yield LoadRow(quantity, path, family, quantity in MAGNITUDES)
+            yield LoadNumber(quantity, path, family, quantity in MAGNITUDES)
 
 
-def _is_component(row: LoadRow) -> bool:
+def _is_component(row: LoadNumber) -> bool:
     return bool(row.vector) and not row.even
 
 
 def grid(
     of: Reported, caption: str, groups: Sequence[LoadGroup], notes: Sequence[str] = (), *, along: bool = False
-) -> Grid:
+) -> ReportTable:
     """The table of some groups; along: with the places of extremes along runs of cuts."""
     governs = governing(of)
     shown = _shown(of, groups, governs)
@@ -132,7 +132,7 @@ def grid(
         rows += [group.title, *(_lines(of, group, shown, governs, along=along))]
     if len(shown) < len(of.runs):
         notes = [*notes, FEW_CASES.format(len(of.runs))]
-    return Grid(caption, _columns(of, along=along), rows, [*_notes(of, rows), *notes])
+    return ReportTable(caption, _columns(of, along=along), rows, [*_notes(of, rows), *notes])
 
 
 def _shown(of: Reported, groups: Sequence[LoadGroup], governs: Governing) -> set[str]:
@@ -162,7 +162,7 @@ def timed(of: Reported) -> bool:
 class WrittenRow(NamedTuple):
     """A number in its unit: of each case its extremes, and the two as they are written."""
 
-    row: LoadRow
+    row: LoadNumber
     found: Sequence[tuple[ReportedRun, Ends]]
     unit: str
     size: float

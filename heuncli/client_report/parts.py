@@ -39,7 +39,7 @@ class ReportCell(NamedTuple):
     governs: bool = False
 
 
-class Grid(NamedTuple):
+class ReportTable(NamedTuple):
     """A table: its columns, its rows of cells, and what is said below. A row that is a text is a line across."""
 
     caption: str
@@ -61,7 +61,7 @@ class Verbatim(NamedTuple):
     text: str
 
 
-Part = Sentence | Facts | Listing | Grid | Drawing | Verbatim
+Part = Sentence | Facts | Listing | ReportTable | Drawing | Verbatim
 
 
 class Chapter(NamedTuple):
@@ -80,7 +80,7 @@ class ClientReport(NamedTuple):
     chapters: Sequence[Chapter]
 
 
-def grid_of(table: TextTable, caption: str | None = None) -> Grid:
+def grid_of(table: TextTable, caption: str | None = None) -> ReportTable:
     """A table as `heun run` prints it; caption: in the place of its heading."""
     rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]
-    return Grid(table.heading if caption is None else caption, table.columns, rows, table.notes)
+    return ReportTable(table.heading if caption is None else caption, table.columns, rows, table.notes)

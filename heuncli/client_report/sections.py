@@ -14,8 +14,8 @@ from heuncli.client_report.extremes import (
     style_of,
     text_of,
 )
-from heuncli.client_report.load_table import LoadGroup, LoadRow, grid, timed
-from heuncli.client_report.parts import Drawing, Grid, Part, ReportCell
+from heuncli.client_report.load_table import LoadGroup, LoadNumber, grid, timed
+from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured
@@ -77,7 +77,7 @@ def _group(of: Reported, name: str) -> LoadGroup:
     own = [(quantity, f"sections.{name}.{quantity}") for quantity in RESULTANTS]
     own += [(quantity, f"sections.{name}.stress.{quantity}") for quantity in STRESSES]
     rows = [
-        LoadRow(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
+        LoadNumber(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
         for quantity, path in own
         if any(True for _ in runs_in(of, path))
     ]
@@ -105,7 +105,7 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
     heads += [TextColumn(f"± [{pa}]"), TextColumn(f"strength [{pa}]"), TextColumn("utilisation")]
     rows = [_cells(of, one, found, most=_size(one) == most) for one in found]
     notes = [SHARE, SAFE, MOST_USED] if any(one.used is not None for one in found) else [SAFE]
-    yield Grid("STRESS  the largest of each section", heads, rows, notes)
+    yield ReportTable("STRESS  the largest of each section", heads, rows, notes)
 
 
 def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[ReportCell]:
