@@ -1,7 +1,7 @@
 """A figure: panels under each other, each with two axes, and in them curves, bands, marks and outlines.
 
 Everything stands in the units of the axes; where it comes to stand in pixels or in the cells of a terminal is told by
-drawing/layout.py and drawing/braille.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
+drawing/layout.py and drawing/letters.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
 """
 
 from __future__ import annotations
@@ -61,7 +61,10 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of drawing/picture.py."""
+    """A marked place with its words; shape: one of drawing/picture.py.
+
+    note: what is told of it below the panels where the words find no room; the words where it is empty.
+    """
 
     x: float
     y: float
@@ -69,6 +72,7 @@ class Spot(NamedTuple):
     pen: int | None = None
     shape: str = "circle"
     filled: bool = False
+    note: str = ""
 
 
 class Words(NamedTuple):
@@ -81,10 +85,15 @@ class Words(NamedTuple):
 
 
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words."""
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot.
+
+    above: the words stand above the panel.
+    """
 
     x: float
     text: str
+    note: str = ""
+    above: bool = False
 
 
 class Blank(NamedTuple):
@@ -155,7 +164,7 @@ class Panel(NamedTuple):
 class Figure(NamedTuple):
     """Panels under each other, a title, what it is of in sentences, and notes below.
 
-    legend: names of pens, with whether they are thin, in their order.
+    legend: names of pens, in their order; marks: names of marks, with their pens and shapes.
     """
 
     title: str
@@ -163,3 +172,4 @@ class Figure(NamedTuple):
     panels: Sequence[Panel]
     legend: Sequence[tuple[str, int]] = ()
     notes: Sequence[str] = ()
+    marks: Sequence[tuple[str, int, str]] = ()

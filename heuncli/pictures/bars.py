@@ -9,14 +9,14 @@ the corner moves, too, and is where it stands at that instant.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
-from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid
+from heuncli.kinetostatics.stretch import DEGREE, SIDES, Stretch, laid
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import instants
 from heuncli.records import record, replace
@@ -57,14 +57,57 @@ class AlongBar(NamedTuple):
 
 
 class Reach(NamedTuple):
-    """The lowest and the highest of a quantity over a run, at each place along a bar (k,); line: when it is largest."""
+    """The lowest and the highest of a quantity over a run, at each place along a bar (k,), and of all of them.
+
+    at_lowest, at_highest: the quantity along the bar at the instants of these.
+    """
 
     s: Array
     low: Array
     high: Array
     lowest: Extreme
     highest: Extreme
-    line: AlongBar
+    at_lowest: AlongBar
+    at_highest: AlongBar
+
+    @property
+    def line(self) -> AlongBar:
+        """At the instant of the largest magnitude."""
+        return self.at_lowest if _larger(self.lowest, self.highest) is self.lowest else self.at_highest
+
+
+class Edges(NamedTuple):
+    """Places at which loads that move over a bar stand, (n_t, m), and the quantities just beside them (6, n_t, m).
+
+    side (m,): on which side of the load.
+    """
+
+    s: Array
+    values: Array
+    side: Array
+
+    @classmethod
+    def of(cls, section: Block) -> Edges | None:
+        """The ends of the pieces of a stretch that move over it, of its block; None where all stand still."""
+        if section["s"].ndim == 1:
+            return None
+        ends = [..., [0, DEGREE]]
+        s = section["s"].reshape(len(section["s"]), -1, DEGREE + 1)[*ends]
+        values = np.stack([section[name].reshape(*s.shape[:2], DEGREE + 1)[*ends] for name in RESULTANTS])
+        moves = np.ptp(s, axis=0) > 0.0
+        return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
+
+    def pass_over(self, places: Array, side: Array, low: Array, high: Array) -> None:
+        """Widen bounds (6, k) at places (k,), in place, by what they are when a load stands there, just beside it."""
+        a, b = self.s[:-1], self.s[1:]
+        first = np.searchsorted(places, np.minimum(a, b), side="left")
+        last = np.searchsorted(places, np.maximum(a, b), side="right")
+        for k, j in zip(*np.nonzero((last > first) & (a != b)), strict=True):
+            own = np.arange(first[k, j], last[k, j])
+            own = own[side[own] != -self.side[j]]
+            share = (places[own] - a[k, j]) / (b[k, j] - a[k, j])
+            there = self.values[:, k, j, None] + share * (self.values[:, k + 1, j] - self.values[:, k, j])[:, None]
+            low[:, own], high[:, own] = np.fmin(low[:, own], there), np.fmax(high[:, own], there)
 
 
 @record
@@ -118,7 +161,9 @@ class Bar:
         assert stretch.asked.form is not None
         near, first = 4.0 * stretch.asked.near, float(stretch.height(np.array(0.0)))
         masses = stretch.corners[stretch.asked.form.masses_in_plane(n, stretch.corners)] - first
-        acting = [(float(point @ n) - first, what) for what, point in attached(self.setup.scene.mechanism, stretch.body)]
+        acting = [
+            (float(point @ n) - first, what) for what, point in attached(self.setup.scene.mechanism, stretch.body)
+        ]
         found: dict[float, list[str]] = {}
         for s, what in [*acting, *((s, "point mass") for s in masses.tolist())]:
             if -near <= s <= self.length + near:
@@ -127,6 +172,12 @@ class Bar:
                 if name not in found.setdefault(at, []):
                     found[at].append(name)
         return sorted(found.items())
+
+    def open_somewhere(self, quantity: str) -> bool:
+        """Whether the laws of rigid bodies leave a quantity open at some cut and instant that is asked for."""
+        results = self.study.results
+        blocks = [blow["sections"] for blow in results.impulses] if self.struck else [results.sections]
+        return any(quantity in block[self.name]["open"] for block in blocks)
 
     @property
     def instants(self) -> Array:
@@ -155,7 +206,9 @@ class Bar:
         for name in RESULTANTS:
             values = told[name]
             if np.isfinite(nodes[name]).all():
-                both = [Extreme(one.value, one.place.s, at) for one in at_one_instant(self.stretch, nodes["s"], nodes[name])]
+                both = [
+                    Extreme(one.value, one.place.s, at) for one in at_one_instant(self.stretch, nodes["s"], nodes[name])
+                ]
             else:
                 both = [_extreme(s, side * values, side, at) for side in (-1.0, 1.0)]
             found[name] = AlongBar(at, s, values, *both)
@@ -165,15 +218,21 @@ class Bar:
         """All quantities along the bar over the run, up to its horizon."""
         times = instants(self.study)
         whole = self._searched(times)
-        lines = {at: self.at(at) for at in extremes.distinct(np.array([_of_largest(both).at for both in whole.values()]))}
+        instants_of = [one.at for both in whole.values() for one in both]
+        lines = {at: self.at(at) for at in extremes.distinct(np.array(instants_of)).tolist()}
+        moving = Edges.of(self.study.reports_at(times, SECTIONS, self.setup).sections[self.name])
         corners = self.stretch.corners - float(self.stretch.height(np.array(0.0)))
-        s, side = places(corners, 4.0 * self.stretch.asked.near, [one.s for both in whole.values() for one in both])
+        turns = np.array([] if moving is None else [f(moving.s) for f in (np.min, np.max)])
+        s, side = places(np.sort(np.append(corners, turns)), 4.0 * self.stretch.asked.near, [
+            one.s for both in whole.values() for one in both
+        ])  # fmt: skip
         low, high = self._bounds(times, laid(self.stretch.asked, s, side), whole)
-        found = {}
-        for i, (name, both) in enumerate(whole.items()):
-            line = lines[_of_largest(both).at][name]
-            found[name] = Reach(s, low[i], high[i], *both, line)
-        return found
+        if moving is not None:
+            moving.pass_over(s, side, low, high)
+        return {
+            name: Reach(s, low[i], high[i], *both, lines[both[0].at][name], lines[both[1].at][name])
+            for i, (name, both) in enumerate(whole.items())
+        }
 
     def _searched(self, times: Array) -> dict[str, tuple[Extreme, Extreme]]:
         """The lowest and the highest of each quantity along the bar and over the run, searched between all of it."""
@@ -234,6 +293,6 @@ def _extreme(s: Array, heights: Array, side: float, at: float) -> Extreme:
     return Extreme(side * float(heights[k]), float(s[k]), at)
 
 
-def _of_largest(both: Sequence[Extreme]) -> Extreme:
+def _larger(*both: Extreme) -> Extreme:
     """Which of two extremes is the larger; of what is open all over, the first."""
     return max(both, key=lambda one: -1.0 if math.isnan(one.value) else abs(one.value))

@@ -6,11 +6,11 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from heuncli.cli.entry import UsageError, worst
+from heuncli.cli.entry import worst
 from heuncli.cli.output import emit
+from heuncli.cli.solving import require_cases
 from heuncli.cli.units import TABLES, say_what_stays
 from heuncli.commands.run.scene import RunTask, leave, solved
-from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.report.export import dump
 from heuncli.report.page_width import fit
@@ -28,9 +28,7 @@ STRUCK = "without blows: these stand in the tables of each case"
 
 def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     """Solve every case and tell of them; returns the exit code."""
-    if not cases:
-        hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
-        raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
+    require_cases(cases)
     told: dict[str, str] = {}
     runs: dict[str, KeptRun] = {}
     codes = [0]
