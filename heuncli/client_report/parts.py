@@ -9,6 +9,7 @@ from heuncli.drawing.figure import Figure
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.text_table import TextColumn, TextTable
 
+MOST_NAMED = 8
 Mood = Literal["plain", "good", "bad", "unsure"]
 
 
@@ -84,3 +85,9 @@ def grid_of(table: TextTable, caption: str | None = None) -> ReportTable:
     """A table as `heun run` prints it; caption: in the place of its heading."""
     rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]
     return ReportTable(table.heading if caption is None else caption, table.columns, rows, table.notes)
+
+
+def some(names: Sequence[str]) -> str:
+    """The first of some names, and how many more there are."""
+    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + rest

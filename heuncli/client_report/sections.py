@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli.client_report.cases_table import cases_table, timed
 from heuncli.client_report.extremes import (
     Ends,
     governing,
@@ -14,7 +15,7 @@ from heuncli.client_report.extremes import (
     style_of,
     text_of,
 )
-from heuncli.client_report.load_table import LoadGroup, LoadNumber, grid, timed
+from heuncli.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
@@ -69,7 +70,7 @@ def _extremes(of: Reported, names: list[str]) -> Iterator[Part]:
         groups = [_group(of, name) for name in names if ("s" in sections[name]) == along]
         if groups:
             caption = SECTIONS.heading(of.runs[0].results, of.labels)
-            yield grid(of, caption, groups, along=along)
+            yield cases_table(of, caption, groups, along=along)
 
 
 def _group(of: Reported, name: str) -> LoadGroup:
@@ -81,7 +82,7 @@ def _group(of: Reported, name: str) -> LoadGroup:
         for quantity, path in own
         if any(True for _ in runs_in(of, path))
     ]
-    return LoadGroup(f"{name}  {SECTIONS.note(name, of.labels)}", rows)
+    return LoadGroup(name, SECTIONS.note(name, of.labels), rows)
 
 
 class UsedSection(NamedTuple):
@@ -101,8 +102,8 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
     most = max(map(_size, found))
     pa, m = of.units.of("Pa")[0], of.units.of("m")[0]
     heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if of.has_cases else [])]
-    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else []), TextColumn(f"mises [{pa}]")]
-    heads += [TextColumn(f"± [{pa}]"), TextColumn(f"strength [{pa}]"), TextColumn("utilisation")]
+    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else [])]
+    heads += [TextColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
     rows = [_cells(of, one, found, most=_size(one) == most) for one in found]
     notes = [SHARE, SAFE, MOST_USED] if any(one.used is not None for one in found) else [SAFE]
     yield ReportTable("STRESS  the largest of each section", heads, rows, notes)
