@@ -15,6 +15,7 @@ from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
 
+HIGH, LOW = 150.0, 56.0  # pixels of a panel, and of one in which all is open
 ORDINATES = 60  # of a hatch along a bar
 FREE = 0.011  # of a bar's length: how far from a sign ordinates are
 LOBE = 0.05  # of a bar's length, and of the largest value: what is less has no sign written in it
@@ -68,7 +69,8 @@ def diagram(quantity: str, drawn: Sequence[Drawn], units: Units, label: str, *, 
     to = Scales(length[1], own[1], -1.0 if over else 1.0, (length[0], own[0]))
     y = _scaling(quantity, drawn, to, label)
     items = [item for each in drawn for item in _of_one(each, quantity, to, y, alone=len(drawn) == 1)]
-    return Panel(y, y, tuple(items), 150.0)
+    is_open = all(np.isnan(each.size(quantity)) for each in drawn)
+    return Panel(y, y, tuple(items), LOW if is_open else HIGH)
 
 
 def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> Scaling:
@@ -170,7 +172,7 @@ def _extremes(drawn: Drawn, quantity: str, to: Scales) -> Iterator[Spot]:
     reach = drawn.reaches.get(quantity)
     steady = high.value - low.value <= error
     for one in (high,) if steady else (high, low):
-        if abs(one.value) <= error:
+        if not abs(one.value) > error:
             continue
         (value,) = write([to.value * one.value], how)
         line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest

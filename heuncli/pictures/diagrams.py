@@ -16,6 +16,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from heuncli.drawing.figure import Blank, Figure, Panel, Scaling, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.pictures.bars import UNITS, Bar
@@ -27,12 +29,13 @@ from heuncli.report.table_units import Units
 from heuncli.results_schema import RESULTANTS
 
 TURNED = frozenset({"M2"})  # whose ordinates point against e1, where they point to the side in tension
-SIDES = {"M1": "up: side of e2", "M2": "up: side of e1"}
+SIDES = {"M1": "e2 up", "M2": "e1 up"}
 LETTERS = 0.009  # of a bar's length in a panel: what a letter of a name takes of it
 LONGEST = 60  # letters of the names at a place
 BAND = (
     "band: lowest and highest over the run at each place; line: the instant of the largest magnitude, which is marked"
 )
+TENSION = "ordinates of M1 and M2 point to the side that bending puts in tension"
 
 
 def diagrams(
@@ -61,7 +64,7 @@ def diagrams(
         banded = banded or any(each.reaches for each in drawn)
     if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
         notes.append(OPEN_NOTE)
-    words += [BAND] * banded
+    words += [BAND] * banded + [TENSION] * tension_side
     return Figure(sources[0].study.results.title, words, panels, legend, notes)
 
 
@@ -124,10 +127,16 @@ def _sorted_out(drawn: Sequence[Drawn]) -> tuple[list[str], list[str]]:
         error = {bar.unit(q): bar.error(q) for q in within for bar in (drawn[0].bar,)}
         told = ", ".join(f"{rough(size)} {unit}" for unit, size in error.items())
         notes.append(f"0 to their stated error ({told}), and not drawn: {', '.join(within)}")
-    at_times = [q for q in shown if any(each.reaches and each.bar.open_somewhere(q) for each in drawn)]
+    at_times = [q for q in shown if any(_open_at_times(each, q) for each in drawn)]
     if at_times:
         notes.append(f"open at some instants, which the band leaves out: {', '.join(at_times)}")
     return shown, notes
+
+
+def _open_at_times(drawn: Drawn, quantity: str) -> bool:
+    """Whether a quantity is open at some instants of a run, and not at others."""
+    known = drawn.reaches and np.isfinite(drawn.reaches[quantity].low).any()
+    return bool(known) and drawn.bar.open_somewhere(quantity)
 
 
 def _verdict(drawn: Drawn, quantity: str) -> str:
