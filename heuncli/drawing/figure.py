@@ -72,7 +72,7 @@ class Spot(NamedTuple):
     below: bool = False
 
 
-class Words(NamedTuple):
+class Inscription(NamedTuple):
     """A few words, or a sign, about a place, without a mark."""
 
     x: float
@@ -118,7 +118,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Inscription | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):

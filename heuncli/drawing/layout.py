@@ -15,6 +15,7 @@ from heuncli.drawing.figure import (
     Blank,
     Cells,
     Figure,
+    Inscription,
     Item,
     Panel,
     Polygon,
@@ -23,7 +24,6 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
-    Words,
 )
 from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
@@ -254,7 +254,7 @@ def _spot(item: Spot, box: Box) -> Iterator[Shape]:
         yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
 
 
-def _words(item: Words, box: Box) -> Iterator[Shape]:
+def _inscription(item: Inscription, box: Box) -> Iterator[Shape]:
     colour = BLACK if item.pen is None else pen(item.pen).colour
     yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
 
@@ -310,7 +310,7 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Inscription: _inscription,
     Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 

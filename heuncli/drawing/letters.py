@@ -20,6 +20,7 @@ from heuncli.drawing.figure import (
     Blank,
     Cells,
     Figure,
+    Inscription,
     Item,
     Panel,
     Polygon,
@@ -28,7 +29,6 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
-    Words,
 )
 from heuncli.drawing.pens import pen
 from heuncli.drawing.ticks import ticks
@@ -103,7 +103,7 @@ class Canvas:
             self.dot(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, number)
 
     def write(self, text: str, column: int, row: int) -> None:
-        """Words over the dots, moved to the left where they would leave the panel; not over other words."""
+        """Inscription over the dots, moved to the left where they would leave the panel; not over other words."""
         begin = max(0, min(column, self.columns - len(text)))
         cells = [(row, begin + k) for k in range(len(text))]
         if 0 <= row < self.rows and begin + len(text) <= self.columns and not any(cell in self.words for cell in cells):
@@ -258,7 +258,7 @@ def _spot(item: Spot, canvas: Canvas) -> None:
         canvas.write(text, column + 1 if right else column - len(text), row + below)
 
 
-def _words(item: Words, canvas: Canvas) -> None:
+def _inscription(item: Inscription, canvas: Canvas) -> None:
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
     canvas.write(shown(item.text), column - len(shown(item.text)) // 2, row)
 
@@ -312,6 +312,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Inscription: _inscription,
     Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

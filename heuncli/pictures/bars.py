@@ -115,7 +115,7 @@ class Edges(NamedTuple):
 
 
 @record
-class Bar:
+class WholeBar:
     """A run of cuts of a solved scene: a bar, of which the loads are told anywhere along it."""
 
     study: Study

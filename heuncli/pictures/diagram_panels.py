@@ -7,10 +7,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
+from heuncli.drawing.figure import Band, Blank, Inscription, Item, Panel, Scaling, Spot, Strokes, Trace
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.bars import AlongBar, Bar, Extreme, Reach
+from heuncli.pictures.bars import AlongBar, Extreme, Reach, WholeBar
 from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
@@ -25,12 +25,12 @@ SPARE = 0.16  # of a panel's height, beyond what is drawn: room for the words at
 UNKNOWN = "not known: the stated error is as large as the numbers"
 
 
-class Drawn(NamedTuple):
+class DrawnBar(NamedTuple):
     """What is drawn of a bar with a pen: its quantities at an instant, or over the run."""
 
     name: str
     pen: int
-    bar: Bar
+    bar: WholeBar
     lines: Mapping[str, AlongBar]
     reaches: Mapping[str, Reach]
 
@@ -63,7 +63,7 @@ class Scales(NamedTuple):
     units: tuple[str, str]
 
 
-def diagram(quantity: str, drawn: Sequence[Drawn], units: Units, label: str, *, over: bool) -> Panel:
+def diagram(quantity: str, drawn: Sequence[DrawnBar], units: Units, label: str, *, over: bool) -> Panel:
     """The panel of a quantity; over: with its axis turned over, so that what is positive points down."""
     length, own = units.of("m"), units.of(drawn[0].bar.unit(quantity))
     to = Scales(length[1], own[1], -1.0 if over else 1.0, (length[0], own[0]))
@@ -73,7 +73,7 @@ def diagram(quantity: str, drawn: Sequence[Drawn], units: Units, label: str, *, 
     return Panel(y, y, tuple(items), LOW if is_open else HIGH)
 
 
-def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> Scaling:
+def _scaling(quantity: str, drawn: Sequence[DrawnBar], to: Scales, label: str) -> Scaling:
     """The axis of a quantity, with its zero."""
     told = [each for each in drawn if not each.is_zero(quantity)]
     values = np.array([to.up * to.value * one.value for each in told for one in each.extremes(quantity)])
@@ -86,7 +86,7 @@ def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> S
     return Scaling(label, low, high, named=tuple((-v, text) for v, text in ticks(Scaling(label, -high, -low), TICKS)))
 
 
-def _of_one(drawn: Drawn, quantity: str, to: Scales, y: Scaling, *, alone: bool) -> Iterator[Item]:
+def _of_one(drawn: DrawnBar, quantity: str, to: Scales, y: Scaling, *, alone: bool) -> Iterator[Item]:
     """What is drawn of a bar; alone: it is the only one, whose ordinates are hatched."""
     line, reach = drawn.lines[quantity], drawn.reaches.get(quantity)
     whose = f"{drawn.name}: " if drawn.name else ""
@@ -142,7 +142,7 @@ def _ordinates(s: Array, values: Array) -> Array:
     return np.stack([np.stack([s, np.zeros_like(s)], axis=1), np.stack([s, values], axis=1)], axis=1)
 
 
-def _signs(s: Array, values: Array, up: float) -> Iterator[Words]:
+def _signs(s: Array, values: Array, up: float) -> Iterator[Inscription]:
     """The sign of each lobe that has room for it, in the middle of its area."""
     known = np.where(np.isfinite(values), values, 0.0)
     most = float(np.abs(known).max())
@@ -154,7 +154,7 @@ def _signs(s: Array, values: Array, up: float) -> Iterator[Words]:
             continue
         middle = float(np.sum(steps * 0.5 * (x[1:] + x[:-1])) / steps.sum())
         value = float(np.interp(middle, s, known))
-        yield Words(middle, 0.5 * value, "+" if up * value > 0.0 else "\N{MINUS SIGN}")
+        yield Inscription(middle, 0.5 * value, "+" if up * value > 0.0 else "\N{MINUS SIGN}")
 
 
 def stretches(s: Array, which: Mask) -> list[tuple[float, float]]:
@@ -164,7 +164,7 @@ def stretches(s: Array, which: Mask) -> list[tuple[float, float]]:
     return [(a, b) for a, b in found if b > a]
 
 
-def _extremes(drawn: Drawn, quantity: str, to: Scales) -> Iterator[Spot]:
+def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
     """The highest and the lowest with their values, and where and when they are; what is 0 is not marked."""
     low, high = drawn.extremes(quantity)
     error, bar = drawn.bar.error(quantity), drawn.bar
