@@ -15,7 +15,6 @@ from heuncli.drawing.figure import (
     Blank,
     Cells,
     Figure,
-    Inscription,
     Item,
     Panel,
     Polygon,
@@ -24,63 +23,33 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
+    Words,
 )
-from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, pen
+from heuncli.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
+from heuncli.drawing.room import WordBox, left_out
+from heuncli.drawing.scales import Box
 from heuncli.drawing.shades import shade
 from heuncli.drawing.ticks import ticks
+from heuncli.drawing.words import SMALL, SPOT, apart, wide, words
 from heuncli.foreign_text import shown
-from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.wrapping import wrapped
 
 WIDTH = 820.0  # pixels
 LEFT, RIGHT, TOP = 86.0, 26.0, 26.0
 UNDER, BETWEEN = 44.0, 20.0  # below a panel with the name of its axis, and between panels
-TITLE, NAME, SMALL = 17.0, 12.0, 11.0  # sizes of letters
+TITLE, NAME = 17.0, 12.0  # sizes of letters
 LINE = 16.0  # from one line of text to the next
 LETTER = 0.56  # of the size of letters: their mean width in a sentence
 PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # pixels at least
 HEAD = 8.0  # the head of an arrow
 HATCH = 9.0  # between the lines of a hatch
-NEAR = 4.0  # from a mark to its words
+SEAM = 0.5  # pixels by which a cell goes under the next, else the ground is seen between them
+MARGIN = 8.0  # of the picture, where words may stand beside a panel without axes
+CLOSE = 2.0  # pixels: vertical marks that are closer are one
+POINT = 1.6  # half the size of a point of a curve that stands alone
 FINE = 0.1  # pixels: what a point of a curve may lie off the line that is drawn
-
-
-class Box(NamedTuple):
-    """The field of a panel in pixels, and its scales."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-    across: Scaling
-    up: Scaling
-
-    def x(self, value: float) -> float:
-        """Where a place along the axis across stands."""
-        return self.left + self.across.at(value) * (self.right - self.left)
-
-    def y(self, value: float) -> float:
-        """Where a place along the axis upwards stands."""
-        return self.bottom - self.up.at(value) * (self.bottom - self.top)
-
-    def points(self, x: Array, y: Array) -> Array:
-        """Where points stand, (n, 2)."""
-        return np.column_stack([_along(self.x, x, self.across), _along(self.y, y, self.up)])
-
-
-def _along(at: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
-    """Many values at once on an axis."""
-    values = np.asarray(values, dtype=np.float64)
-    if scaling.logarithmic:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            values = np.log(values)
-        low, high = math.log(scaling.low), math.log(scaling.high)
-    else:
-        low, high = scaling.low, scaling.high
-    first, last = at(scaling.low), at(scaling.high)
-    return np.asarray(first + (values - low) / (high - low) * (last - first))
 
 
 def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
@@ -88,6 +57,7 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
     shapes, y = _heading(figure, width)
     shapes += (legend := _legend(figure, y, width))[0]
     y = legend[1]
+    told: list[str] = []
     for panel in figure.panels:
         y += LINE + 4.0 if panel.title else 6.0
         head = y - 6.0
@@ -95,14 +65,17 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
         box = _box(panel, y, width)
         if panel.title:
             shapes.append(Text(box.left, head, shown(panel.title), NAME, bold=True))
-        shapes += _panel(panel, box)
+        drawn, without_words = _panel(panel, box, width)
+        shapes += drawn
+        told += without_words
         y = box.bottom + (UNDER if panel.x.label else BETWEEN)
-    for note in figure.notes:
+    notes = [*figure.notes, *left_out(told)]
+    y += 6.0 if notes else 0.0
+    for note in notes:
         for text in _wrapped(note, SMALL, width):
             shapes.append(Text(20.0, y + 4.0, text, SMALL, colour=GREY))
             y += LINE
-    words = "; ".join(map(shown, figure.words))
-    return Picture(width, y + 8.0, shown(figure.title), words, shapes)
+    return Picture(width, y + 8.0, shown(figure.title), "; ".join(map(shown, figure.words)), shapes)
 
 
 def _heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
@@ -125,18 +98,22 @@ def _wrapped(text: str, size: float, width: float) -> list[str]:
 
 
 def _legend(figure: Figure, y: float, width: float) -> tuple[list[Shape], float]:
-    """A stroke of each pen with its name, as many in a line as fit, and the height below."""
+    """A stroke or mark of each pen with its name, as many in a line as fit, and the height below."""
     shapes: list[Shape] = []
-    if not figure.legend:
+    entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
+    if not entries:
         return shapes, y
     x, y = 20.0, y + 4.0
-    for name, number in figure.legend:
+    for name, number, mark in entries:
         text = shown(name)
-        room = 34.0 + LETTER * NAME * len(text) + 18.0
+        room = 34.0 + wide(text, NAME) + 14.0
         if x > 20.0 and x + room > width - 20.0:
             x, y = 20.0, y + LINE
         own = pen(number)
-        shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), own.colour, 2.0, own.dash))
+        if mark:
+            shapes.append(Mark(x + 14.0, y - 4.0, mark, own.colour, False, SPOT))
+        else:
+            shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), own.colour, 2.0, own.dash))
         shapes.append(Text(x + 34.0, y, text, NAME))
         x += room
     return shapes, y + 8.0
@@ -153,13 +130,19 @@ def _box(panel: Panel, top: float, width: float) -> Box:
     return Box(left, top, right, top + height, panel.x, panel.y)
 
 
-def _panel(panel: Panel, box: Box) -> list[Shape]:
-    """The axes and items of a panel, what is filled first, words last."""
-    drawn = [shape for item in panel.items for shape in _shapes(item, box)]
+def _panel(panel: Panel, box: Box, width: float) -> tuple[list[Shape], list[str]]:
+    """The axes and items of a panel, what is filled first, words last; and what is told of words without room."""
+    items = apart(panel.items, box, CLOSE)
+    drawn = [shape for item in items for shape in _shapes(item, box)]
     order = {Area: 0, Line: 1, Mark: 2, Text: 3}
     drawn.sort(key=lambda shape: order[type(shape)])
     filled = [shape for shape in drawn if isinstance(shape, Area)]
-    return [*filled, *([] if panel.bare else _axes(box)), *drawn[len(filled) :]]
+    room = WordBox(box.left, box.top, box.right, box.bottom)
+    if panel.bare:
+        room = WordBox(MARGIN, box.top, width - MARGIN, box.bottom)
+    texts, told = words(items, box, drawn, room)
+    axes = [] if panel.bare else list(_axes(box))
+    return [*filled, *axes, *drawn[len(filled) :], *texts], told
 
 
 def _axes(box: Box) -> Iterator[Shape]:
@@ -168,7 +151,7 @@ def _axes(box: Box) -> Iterator[Shape]:
     for value, text in ticks(box.across, most[0]):
         x = box.x(value)
         yield Line(((x, box.top), (x, box.bottom)), GREY if _is_zero(value, box.across) else FAINT, 0.8)
-        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), BLACK, 0.8)
+        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8)
         if box.across.label:
             yield Text(x, box.bottom + 16.0, shown(text), SMALL, "middle")
     for value, text in ticks(box.up, most[1]):
@@ -176,7 +159,7 @@ def _axes(box: Box) -> Iterator[Shape]:
         yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
         yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    yield Line((*corners, corners[0]), BLACK, 1.0)
+    yield Line((*corners, corners[0]), GREY, 0.8)
     if box.across.label:
         yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
     if box.up.label:
@@ -185,7 +168,7 @@ def _axes(box: Box) -> Iterator[Shape]:
 
 
 def _is_zero(value: float, scaling: Scaling) -> bool:
-    return value == 0.0 and not scaling.logarithmic
+    return value == 0.0 and not scaling.logarithmic and not scaling.named
 
 
 def _shapes(item: Item, box: Box) -> Iterator[Shape]:
@@ -197,13 +180,18 @@ def _shapes(item: Item, box: Box) -> Iterator[Shape]:
 def _trace(item: Trace, box: Box) -> Iterator[Shape]:
     own = pen(item.pen)
     for part in pieces(box.points(item.x, item.y)):
+        if len(part) == 1:
+            yield Mark(float(part[0, 0]), float(part[0, 1]), "circle", own.colour, True, POINT)
+            continue
         line = tuple(map(tuple, thinned(part).tolist()))
-        yield Line(line, own.colour, 0.9 if item.thin else 1.8, own.dash, shown(item.name))
+        yield Line(line, own.colour, 0.9 if item.thin else 1.5, own.dash, shown(item.name))
 
 
 def _band(item: Band, box: Box) -> Iterator[Shape]:
     low, high = box.points(item.x, item.low), box.points(item.x, item.high)
     for part in pieces(np.hstack([low, high])):
+        if len(part) == 1:
+            continue
         around = np.concatenate([thinned(part[:, :2]), thinned(part[:, 2:])[::-1]])
         yield Area(tuple(map(tuple, around.tolist())), pen(item.pen).colour, 0.2, shown(item.name))
 
@@ -242,31 +230,20 @@ def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
 
 
 def _spot(item: Spot, box: Box) -> Iterator[Shape]:
-    x, y = box.x(item.x), box.y(item.y)
     colour = BLACK if item.pen is None else pen(item.pen).colour
-    yield Mark(x, y, item.shape, colour, item.filled, 3.2)
-    if item.text:
-        text = shown(item.text)
-        room = LETTER * SMALL * len(text)
-        right = x + NEAR + 3.0 + room <= box.right
-        room_below, room_above = y + SMALL + 6.0 < box.bottom, y - SMALL - 6.0 > box.top
-        up = SMALL + 5.0 if (item.below and room_below) or not room_above else -NEAR - 2.0
-        yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
+    yield Mark(box.x(item.x), box.y(item.y), item.shape, colour, item.filled, SPOT)
 
 
-def _inscription(item: Inscription, box: Box) -> Iterator[Shape]:
+def _words(item: Words, box: Box) -> Iterator[Shape]:
     colour = BLACK if item.pen is None else pen(item.pen).colour
     yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
 
 
 def _upright(item: Upright, box: Box) -> Iterator[Shape]:
     x = box.x(item.x)
-    yield Line(((x, box.top), (x, box.bottom)), GREY, 1.0, (3.0, 3.0), shown(item.text))
+    yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
     if item.above:
         yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
-    elif item.text:  # to the left of its line, where there is room
-        left = x - 3.0 if x - box.left > SMALL + 3.0 else x + SMALL
-        yield Text(left, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
 
 
 def _blank(item: Blank, box: Box) -> Iterator[Shape]:
@@ -281,7 +258,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
         low, high = max(left, x), min(right, x + height)
         if low < high:
             yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
-    yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY)
+    yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY, halo=True)
 
 
 def _bars(item: Bars, box: Box) -> Iterator[Shape]:
@@ -301,25 +278,28 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
     )
     known = item.values[np.isfinite(item.values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    there = np.pad(np.isfinite(item.values), ((0, 1), (0, 1)))
     for j, row in enumerate(item.values.tolist()):
         for i, value in enumerate(row):
-            if math.isfinite(value):
+            if there[j, i]:
                 share = (value - low) / (high - low) if high > low else 0.5
-                corners = ((xs[i], ys[j]), (xs[i + 1], ys[j]), (xs[i + 1], ys[j + 1]), (xs[i], ys[j + 1]))
+                right = xs[i + 1] + (SEAM if there[j, i + 1] else 0.0)
+                upper = ys[j + 1] - (SEAM if there[j + 1, i] else 0.0)
+                corners = ((xs[i], ys[j]), (right, ys[j]), (right, upper), (xs[i], upper))
                 yield Area(tuple((float(a), float(b)) for a, b in corners), shade(share), 1.0)
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Inscription: _inscription,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
     Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 
 def pieces(points: Array) -> list[Array]:
-    """The stretches of a course (n, m) between what is not known; single points are none."""
+    """The stretches of a course (n, m) between what is not known; of one point, too."""
     known = np.isfinite(points).all(axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
-    return [points[a:b] for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > 1]
+    return [points[a:b] for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)]
 
 
 def thinned(points: Array) -> Array:

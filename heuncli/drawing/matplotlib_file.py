@@ -56,8 +56,11 @@ def rendered(picture: Picture, form: str) -> bytes:
 def write(axes: object, text: Text) -> None:
     """A line of text."""
     where = {"start": "left", "middle": "center", "end": "right"}[text.anchor]
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=3.0 * POINTS, foreground="#ffffff")] if text.halo else None
     axes.text(  # type: ignore[attr-defined]
         text.x, text.y, text.text, parse_math=False, fontsize=text.size * POINTS, color=text.colour, ha=where,
         va="baseline", fontweight="bold" if text.bold else "normal", rotation=90 if text.turned else 0,
-        rotation_mode="anchor", zorder=4,
+        rotation_mode="anchor", zorder=4, path_effects=halo,
     )  # fmt: skip

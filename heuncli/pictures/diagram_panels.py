@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.drawing.figure import Band, Blank, Inscription, Item, Panel, Scaling, Spot, Strokes, Trace
+from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.bars import AlongBar, Extreme, Reach, WholeBar
@@ -142,7 +142,7 @@ def _ordinates(s: Array, values: Array) -> Array:
     return np.stack([np.stack([s, np.zeros_like(s)], axis=1), np.stack([s, values], axis=1)], axis=1)
 
 
-def _signs(s: Array, values: Array, up: float) -> Iterator[Inscription]:
+def _signs(s: Array, values: Array, up: float) -> Iterator[Words]:
     """The sign of each lobe that has room for it, in the middle of its area."""
     known = np.where(np.isfinite(values), values, 0.0)
     most = float(np.abs(known).max())
@@ -154,7 +154,7 @@ def _signs(s: Array, values: Array, up: float) -> Iterator[Inscription]:
             continue
         middle = float(np.sum(steps * 0.5 * (x[1:] + x[:-1])) / steps.sum())
         value = float(np.interp(middle, s, known))
-        yield Inscription(middle, 0.5 * value, "+" if up * value > 0.0 else "\N{MINUS SIGN}")
+        yield Words(middle, 0.5 * value, "+" if up * value > 0.0 else "\N{MINUS SIGN}")
 
 
 def stretches(s: Array, which: Mask) -> list[tuple[float, float]]:
@@ -180,8 +180,7 @@ def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
         where = [] if steady else [f"s = {short(float(f'{to.s * s:.4g}'))} {to.units[0]}"]
         when = [f"t = {short(float(f'{one.at:.4g}'))} s"] if reach is not None and varies_at(s, reach, error) else []
         text = f"{value} at {', '.join([*where, *when])}" if where or when else value
-        below = (one is low) == (to.up > 0.0)
-        yield Spot(to.s * s, to.up * to.value * one.value, text, drawn.pen, filled=True, below=below)
+        yield Spot(to.s * s, to.up * to.value * one.value, text, drawn.pen, filled=True)
 
 
 def first_place(one: Extreme, line: AlongBar, error: float) -> float:
