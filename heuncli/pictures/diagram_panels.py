@@ -21,7 +21,7 @@ FREE = 0.011  # of a bar's length: how far from a sign ordinates are
 LOBE = 0.05  # of a bar's length, and of the largest value: what is less has no sign written in it
 VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
 TICKS = 4  # of an axis that is turned over
-SPARE = 0.16  # of a panel's height, beyond what is drawn: room for the words at extremes
+SPARE = 0.22  # of a panel's height, beyond what is drawn: room for the words at extremes
 UNKNOWN = "not known: the stated error is as large as the numbers"
 
 
