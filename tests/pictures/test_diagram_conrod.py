@@ -14,7 +14,7 @@ import pytest
 from heuncli.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import CONROD, panels_of
-from tests.shared.drawn_panels import heights
+from tests.shared.drawn_panels import edges, heights
 from tests.shared.scenes import study
 
 R, L, W, MASS = 0.05, 0.2, 300.0, 0.6
@@ -64,10 +64,7 @@ def test_the_band_is_the_least_and_the_greatest_of_all_crank_angles(flying: Stud
     shown = panels_of(flying, "shank")
     for quantity, exact in zip(("Q1", "M2"), bending(phi, S), strict=True):
         panel = shown[quantity]
-        around = panel.areas[f"lowest and highest of {quantity}"]
-        last = int(np.argmax(around[:, 0]))
-        back = around[last + 1 :] if around[last + 1, 0] >= around[last, 0] else around[last:]
-        low, high = heights(around[: last + 1], S), heights(back[::-1], S)
+        low, high = edges(panel.areas[f"lowest and highest of {quantity}"], S)
         assert np.abs(low - exact.min(axis=0)).max() <= panel.pixel
         assert np.abs(high - exact.max(axis=0)).max() <= panel.pixel
         at = int(np.abs(exact).max(axis=1).argmax())

@@ -126,6 +126,14 @@ def heights(curve: Array, s: Array) -> Array:
     return np.interp(s, curve[:, 0], curve[:, 1])
 
 
+def edges(area: Array, s: Array) -> tuple[Array, Array]:
+    """The lower and the upper edge of a band (n, 2), drawn there and back, over places."""
+    turn = int(np.argmax(area[:, 0]))
+    beyond = turn + 1 + int(np.argmax(area[turn + 1 :, 0] >= area[turn, 0]))
+    turn = beyond if area[beyond, 0] >= area[turn, 0] else turn + 1
+    return heights(area[:turn], s), heights(area[turn:][::-1], s)
+
+
 def upright_at(curve: Array, s: float, near: float) -> list[tuple[float, float]]:
     """The upright lines of a curve at a place: from which height to which."""
     steps = pairwise(curve)
