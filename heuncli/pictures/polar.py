@@ -27,7 +27,7 @@ from heuncli.study.search import extremes
 from heuncli.variants.stated import unit_of
 
 HEIGHT = 460.0  # pixels
-SLIM = 0.6  # of the longer side of a panel, what the shorter is at least
+SLIM = 0.75  # of the longer side of a panel, what the shorter is at least
 STEPS = (30, 45, 90, 180, 360, 720, 1440, 3600)  # degrees between marks
 MOST_MARKS = 24
 INSTANTS = 9  # marks of a run in which nothing turns on
