@@ -56,8 +56,9 @@ def moved_bodies(spec: Spec) -> MovedBodies:
         here, bodies = found.here, found.here.layout.mechanism.bodies
         order = np.array([here.layout.place[k] for k in range(len(bodies))], dtype=np.intp)
         own = here.found
-        shapes = np.array([mode.shape for mode in found.modes], dtype=complex).reshape(len(found.modes), -1)
-        twists = np.einsum("bin,mn->mbi", own.twists[order], shapes) if len(shapes) else np.zeros((0, len(bodies), 6))
+        twists = np.zeros((len(found.modes), len(bodies), 6), dtype=complex)
+        for k, mode in enumerate(found.modes):
+            twists[k] = own.twists[order] @ mode.shape
         attitudes, centres = own.attitudes[order], own.centres[order]
         inside = np.array([body.center for body in bodies]).reshape(-1, 3)
         return MovedBodies(

@@ -16,7 +16,7 @@ from heuncli.drawing.pens import PENS
 from heuncli.drawing.ticks import ends
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, picked
+from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, example, picked
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Indices
 
@@ -108,11 +108,8 @@ def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str
     if len(combinations) > len(PENS):
         names = ", ".join(one.name for one in own.varied)
         message = f"{own.table.origin}: {len(own.varied)} variables ({names}) would make {len(combinations)} curves"
-        one = others[0]
-        hint = (
-            f"hold some, as {one.name}={one.word(one.levels[0])}, until two vary or at most {len(PENS)} curves are left"
-        )
-        raise NotDrawable(message, hint)
+        held = example(others[0])
+        raise NotDrawable(message, f"hold some, as {held}, until two vary or at most {len(PENS)} curves are left")
     found = []
     for values in combinations:
         mask = np.ones(own.table.rows, dtype=bool)
@@ -174,7 +171,7 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
     across, upward = own.varied
     if len(across.levels) * len(upward.levels) > MOST_CELLS:
         message = f"{own.table.origin}: {len(across.levels)} by {len(upward.levels)} cells; at most {MOST_CELLS:,}"
-        raise NotDrawable(message, f"hold one, as {across.name}={across.word(across.levels[0])}")
+        raise NotDrawable(message, f"hold one, as {example(across)}")
     x, y = _axis(across, cells=True), _axis(upward, cells=True)
     panels: list[Panel] = []
     notes = [one.note for one in (x, y) if one.note]
