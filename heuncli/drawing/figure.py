@@ -75,12 +75,25 @@ class Spot(NamedTuple):
     note: str = ""
 
 
+class Words(NamedTuple):
+    """A few words, or a sign, about a place, without a mark."""
+
+    x: float
+    y: float
+    text: str
+    pen: int | None = None
+
+
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot."""
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot.
+
+    above: the words stand above the panel.
+    """
 
     x: float
     text: str
     note: str = ""
+    above: bool = False
 
 
 class Blank(NamedTuple):
@@ -112,7 +125,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):

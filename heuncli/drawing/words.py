@@ -27,14 +27,19 @@ def words(items: Sequence[Item], box: Box, drawn: Sequence[Shape], room: WordBox
     field = _field(drawn, room)
     texts: list[Shape] = []
     told: list[str] = []
-    for item in items:
-        if isinstance(item, Upright | Spot) and item.text:
-            text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
-            if text is None:
-                told.append(item.note or item.text)
-            else:
-                texts.append(text)
+    for item in in_turn(items):
+        text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
+        if text is None:
+            told.append(item.note or item.text)
+        else:
+            texts.append(text)
     return texts, told
+
+
+def in_turn(items: Sequence[Item]) -> list[Spot | Upright]:
+    """What has words in the panel, in the order in which these look for room: numbers at marks first."""
+    spots = [item for item in items if isinstance(item, Spot) and item.text]
+    return [*spots, *(item for item in items if isinstance(item, Upright) and item.text and not item.above)]
 
 
 def wide(text: str, size: float) -> float:

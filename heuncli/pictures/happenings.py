@@ -12,9 +12,14 @@ from heuncli.drawing.ticks import short
 from heuncli.pictures.courses import Course, Pictured, jumps_of
 from heuncli.results import Array, Results
 
+OFTEN = 5  # times
 
-def marks_of(sources: Sequence[Pictured], courses: Sequence[Course]) -> list[Upright]:
-    """The marks, ascending, each instant once; of several runs what happens in any of them."""
+
+def marks_of(sources: Sequence[Pictured], courses: Sequence[Course]) -> tuple[list[Upright], list[str]]:
+    """The marks, ascending, each instant once, and notes; of several runs what happens in any of them.
+
+    What happens again and again has its words where it does so first.
+    """
     found: dict[float, str] = {}
     for source in sources:
         results = source.study.results
@@ -30,7 +35,17 @@ def marks_of(sources: Sequence[Pictured], courses: Sequence[Course]) -> list[Upr
     for at in (at for course in courses for at in jumps_of(course).tolist()):
         if not _near(known, at):
             found.setdefault(at, "")
-    return [Upright(at, words, told(words, at)) for at, words in sorted(found.items())]
+    often: dict[str, list[float]] = {}
+    for at, words in sorted(found.items()):
+        often.setdefault(words, []).append(at)
+    marks = [
+        Upright(at, words if at == often[words][0] or len(often[words]) <= OFTEN else "", told(words, at))
+        for at, words in sorted(found.items())
+    ]
+    return marks, [
+        f"{words}: {len(ats)} times, first at {instant(ats[0])}, last at {instant(ats[-1])}"
+        for words, ats in often.items() if words and len(ats) > OFTEN
+    ]  # fmt: skip
 
 
 def _claimed_to(results: Results) -> float:

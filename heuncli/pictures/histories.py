@@ -66,7 +66,7 @@ def history(
     for each in drawn:
         groups.setdefault(each.course.unit, []).append(each)
     x = _axis_across(sources, drawn, measured, across)
-    marks = [] if over is not None else marks_of(sources, [each.course for each in drawn])
+    marks, notes = ([], []) if over is not None else marks_of(sources, [each.course for each in drawn])
     height = HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
     panels: list[Panel] = []
     for unit, own in groups.items():
@@ -83,7 +83,7 @@ def history(
         [sentence for source in sources for sentence in _words(source)],
         panels,
         [(each.name, each.pen) for each in drawn],
-        _notes(drawn, panels),
+        [*_notes(drawn, panels), *notes],
         [(each.name, len(drawn) + k, "square") for k, each in enumerate(measured)],
     )
 
@@ -108,21 +108,30 @@ def _axis_across(
     if across.over is None:
         values += [source.study.results.time for source in sources]
     low, high = _range(np.concatenate(values) * across.size)
-    return Scaling(
-        f"{across.over or 't'} [{across.unit}]", *ends(low, high, spare=0.0 if across.over is None else 0.04)
-    )
+    label = f"{across.over or 't'} [{across.unit if across.unit not in ('', '1') else '-'}]"
+    if low == high:  # one instant alone: nothing is claimed about it
+        return Scaling(label, *ends(low, high), named=((low, short(low)),))
+    return Scaling(label, *ends(low, high, spare=0.0 if across.over is None else 0.04))
 
 
 def _axis_up(unit: str, drawn: Sequence[Drawn], measured: Sequence[Measured], units: Units) -> Scaling:
     """The axis of a panel: around what is drawn, with zero where that is near."""
     shown, size = units.of(unit)
+    label = f"{QUANTITIES.get(unit, '')} [{'-' if shown in ('', '1') else shown}]".strip()
+    if _all_open(drawn):
+        return Scaling(label, 0.0, 1.0, named=((0.0, ""),))
     peaks = [peak.value for each in drawn for peak in (each.course.low, each.course.high)]
     low, high = _range(np.concatenate([*(each.course.values for each in drawn), *(each.y for each in measured), peaks]))
     error = max(each.course.error or 0.0 for each in drawn)
     if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
     low, high = ends(size * low, size * high, zero=_near_zero(low, high), spare=SPARE)
-    return Scaling(f"{QUANTITIES.get(unit, '')} [{'-' if shown in ('', '1') else shown}]".strip(), low, high)
+    return Scaling(label, low, high)
+
+
+def _all_open(drawn: Sequence[Drawn]) -> bool:
+    """Whether there is nothing to draw."""
+    return all(np.isnan(each.course.values).all() for each in drawn)
 
 
 def _range(values: Array) -> tuple[float, float]:
@@ -138,7 +147,7 @@ def _near_zero(low: float, high: float) -> bool:
 
 def _blanks(sources: Sequence[Pictured], drawn: Sequence[Drawn], x: Scaling, across: Across) -> Iterator[Item]:
     """What stays empty, and why: beyond the horizon of every run, or all of a panel whose numbers are open."""
-    if all(np.isnan(each.course.values).all() for each in drawn):
+    if _all_open(drawn):
         yield Blank(x.low, x.high, ALL_OPEN)
         return
     claimed = max(
@@ -211,9 +220,12 @@ def _words(source: Pictured) -> Iterator[str]:
 
 
 def _notes(drawn: Sequence[Drawn], panels: Sequence[Panel]) -> list[str]:
-    """What is open somewhere, and so is not drawn there; what bands are."""
-    lost = [each.name for each in drawn if np.isnan(each.course.values).any()]
-    notes = [f"open or not known in parts, and not drawn there: {', '.join(lost)}"] if lost else []
+    """What is open, throughout or somewhere, and so is not drawn there; what bands are."""
+    gaps = [np.isnan(each.course.values) for each in drawn]
+    all_open = [each.name for each, lost in zip(drawn, gaps, strict=True) if lost.all()]
+    in_parts = [each.name for each, lost in zip(drawn, gaps, strict=True) if lost.any() and not lost.all()]
+    notes = [f"open, and not drawn: {', '.join(all_open)}"] if all_open else []
+    notes += [f"open or not known at some instants, and not drawn there: {', '.join(in_parts)}"] if in_parts else []
     if any(isinstance(item, Band) for panel in panels for item in panel.items):
         notes.append("light bands: the stated error")
     return notes

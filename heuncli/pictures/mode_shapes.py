@@ -17,8 +17,8 @@ from heuncli.linearisation.oscillations import Mode
 from heuncli.mechanism.model import Body
 from heuncli.named_tuples import NamedTuple
 from heuncli.oscillations.moved_bodies import MovedBodies
-from heuncli.oscillations.words import about, figures_of, notes
 from heuncli.pictures.refusals import NotDrawable
+from heuncli.report.mode_words import about, figures_of, notes
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND, Machine
 from heuncli.scenery.views import View

@@ -8,7 +8,7 @@ from heuncli.foreign_text import shown
 from heuncli.joint_kinds import is_length
 from heuncli.linearisation.modes import SceneModes
 from heuncli.linearisation.oscillations import Mode
-from heuncli.oscillations.words import about, figures_of, notes
+from heuncli.report.mode_words import about, figures_of, notes
 from heuncli.report.page_width import fit
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, plain
 from heuncli.version import VERSION

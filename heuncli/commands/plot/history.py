@@ -14,6 +14,7 @@ from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.histories import history
 from heuncli.pictures.measurements import Measured, asked_points, measured
+from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.variants.stated import unit_of
@@ -26,7 +27,8 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     for _, spec in specs:
         measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
     points = _points(asked, request, specs[0][1])
-    sources = [solution(name, spec, paths, request) for name, spec in specs]
+    needed = [*paths, BLOWS, EVENTS]  # these are marked
+    sources = [solution(name, spec, needed, request) for name, spec in specs]
     return history(sources, asked.paths, units(request.units), request.x, points)
 
 

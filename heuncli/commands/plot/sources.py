@@ -8,7 +8,7 @@ from pathlib import PurePath
 from heuncli.cli import alarm, measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.solving import choice, overrides, solver_options, warn
+from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.errors import Problem
@@ -45,7 +45,9 @@ def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     if request.case is None:
         yield name, load(file, overrides=given, checking=False)
     elif request.case == ALL_CASES:
-        for case, spec in load_with_cases(file, given, checking=False)[1].items():
+        cases = load_with_cases(file, given, checking=False)[1]
+        require_cases(cases)
+        for case, spec in cases.items():
             yield f"{name} {case}", spec
     else:
         for case in request.case.split(","):
