@@ -17,7 +17,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured, instants, vectors_at
 from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
 from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.turning import Turning, angles_of, turning_of
+from heuncli.pictures.turning import TurningRun, angles_of, turning_of
 from heuncli.report.table_units import Units
 from heuncli.results import Array
 from heuncli.results_schema import SPACE
@@ -37,7 +37,7 @@ HEADING, WIDE = 14.0, 700.0  # pixels: how long such an arrow is, and how wide a
 THRUST = 1e-6  # of the largest vector: what stands across the plane and is worth a note
 
 
-class Curve(NamedTuple):
+class TipCurve(NamedTuple):
     """The tips of a vector: (n, 3), in a plane, over the instants of a turning; named in the legend, with its pen."""
 
     name: str
@@ -45,7 +45,7 @@ class Curve(NamedTuple):
     unit: str
     pen: int
     study: Study
-    turning: Turning
+    turning: TurningRun
     vectors: Array
     plane: Plane
 
@@ -77,7 +77,7 @@ def polar(
     Raises NotDrawable.
     """
     curves = list(_curves(sources, paths, axes, view))
-    groups: dict[tuple[object, ...], list[Curve]] = {}
+    groups: dict[tuple[object, ...], list[TipCurve]] = {}
     for curve in curves:
         groups.setdefault((curve.unit, curve.plane.key), []).append(curve)
     largest = {curve.pen: _largest(curve) for curve in curves}
@@ -89,7 +89,7 @@ def polar(
     return Figure(title, words, panels, [(curve.name, curve.pen) for curve in curves], notes)
 
 
-def _curves(sources: Sequence[Pictured], paths: Sequence[str], axes: str, view: str | None) -> Iterator[Curve]:
+def _curves(sources: Sequence[Pictured], paths: Sequence[str], axes: str, view: str | None) -> Iterator[TipCurve]:
     """The curves, each with its pen."""
     number = 0
     for source in sources:
@@ -105,7 +105,7 @@ def _curves(sources: Sequence[Pictured], paths: Sequence[str], axes: str, view: 
                 else plane_of(study, path, vectors, turning.times, axes, turning.path)
             )
             name = f"{source.name}: {path}" if source.name else path
-            yield Curve(name, path, unit_of(path, study.spec), number, study, turning, vectors, plane)
+            yield TipCurve(name, path, unit_of(path, study.spec), number, study, turning, vectors, plane)
             number += 1
 
 
@@ -120,7 +120,7 @@ def _require_vector(study: Study, path: str) -> None:
         raise NotDrawable(message, "give the scene a motion: analysis.duration")
 
 
-def _turning(study: Study, paths: Sequence[str]) -> Turning:
+def _turning(study: Study, paths: Sequence[str]) -> TurningRun:
     """What is seen of a run."""
     candidates = [path for path in angles_of(study.spec) if path.split(".")[1] in study.results.coordinates]
     return turning_of(
@@ -128,7 +128,7 @@ def _turning(study: Study, paths: Sequence[str]) -> Turning:
     )
 
 
-def _largest(curve: Curve) -> Largest | None:
+def _largest(curve: TipCurve) -> Largest | None:
     """The largest vector in the plane; None where none is known."""
     study, plane = curve.study, curve.plane
 
@@ -148,7 +148,7 @@ def _largest(curve: Curve) -> Largest | None:
     return Largest(float(vector @ plane.right), float(vector @ plane.up), math.sqrt(float(found.high[0])), at)
 
 
-def _panel(group: Sequence[Curve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
+def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
     """The curves of one unit in one plane, with equal axes about their origin."""
     unit, size = units.of(group[0].unit)
     across, up = _sides([size * curve.x for curve in group], [size * curve.y for curve in group])
@@ -176,14 +176,14 @@ def _sides(xs: Sequence[Array], ys: Sequence[Array]) -> tuple[tuple[float, float
     return found[0], found[1]
 
 
-def _quantity(group: Sequence[Curve]) -> str:
+def _quantity(group: Sequence[TipCurve]) -> str:
     """What is drawn, if all is of one kind."""
     names = {curve.path.rpartition(".")[2] for curve in group}
     return names.pop() if len(names) == 1 else "component"
 
 
 def _curve(
-    curve: Curve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling],
+    curve: TipCurve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling],
     written: list[tuple[float, float]],
 ) -> Iterator[Item]:  # fmt: skip
     """A curve with its direction, its marks and its largest vector."""
@@ -219,7 +219,7 @@ def _headings(x: Array, y: Array, number: int, length: float) -> Iterator[Arrow]
             yield Arrow(x[k], y[k], scale * (x[j] - x[k]), scale * (y[j] - y[k]), number)
 
 
-def _marks(turning: Turning) -> list[tuple[float, str]]:
+def _marks(turning: TurningRun) -> list[tuple[float, str]]:
     """Instants that are marked along curves, and what is written there: angles, or the instants themselves."""
     times = turning.times
     if not turning.path:
@@ -244,7 +244,7 @@ def _near(place: tuple[float, float], other: tuple[float, float], sides: tuple[S
     )
 
 
-def _firsts(sources: Sequence[Pictured], curves: Sequence[Curve]) -> Iterator[tuple[Pictured, Curve]]:
+def _firsts(sources: Sequence[Pictured], curves: Sequence[TipCurve]) -> Iterator[tuple[Pictured, TipCurve]]:
     """Each source with the first of its curves."""
     for source in sources:
         yield source, next(curve for curve in curves if curve.study is source.study)
@@ -255,7 +255,7 @@ def _called(source: Pictured) -> str:
     return source.name or str(source.study.results.spec.get("path", ""))
 
 
-def _axes_in_words(axes: str, curves: Sequence[Curve]) -> str:
+def _axes_in_words(axes: str, curves: Sequence[TipCurve]) -> str:
     """Whose loads these are, in which axes."""
     joints = [curve for curve in curves if curve.path.startswith("joints.")]
     on = "of a joint: what `from` exerts ON `to`; of the foundation: ON it; "
@@ -265,13 +265,13 @@ def _axes_in_words(axes: str, curves: Sequence[Curve]) -> str:
     return f"{on}joints in the axes of {', '.join(sorted(bodies))} (`{axes}`)"
 
 
-def _body_of(curve: Curve, axes: str) -> str:
+def _body_of(curve: TipCurve, axes: str) -> str:
     """The body whose axes a joint's loads are told in."""
     joint = curve.study.spec.joints[curve.path.split(".")[1]]
     return joint.a if axes == "from" else joint.b
 
 
-def _notes(curve: Curve, largest: Largest | None, units: Units) -> Iterator[str]:
+def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[str]:
     """The largest with its direction and instant; what is not drawn."""
     unit, size = units.of(curve.unit)
     if largest is None:

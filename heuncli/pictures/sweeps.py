@@ -31,7 +31,7 @@ NAMES_WIDE, NAMES_MOST = 100, 12  # letters and names below an axis; more are nu
 EVEN = 1e-6  # of steps between values: those of equal steps
 
 
-class Axis(NamedTuple):
+class VariableAxis(NamedTuple):
     """A variable along an axis: its places (n,) of all rows, its levels, how these are told, and what is numbered."""
 
     variable: SweptVariable
@@ -233,7 +233,7 @@ def _scatter(own: PickedTable, units: Units) -> Drawn:
     return panels, [], notes + [note for one in chosen if (note := _axis(one).note)]
 
 
-def _axis(variable: SweptVariable, *, cells: bool = False) -> Axis:
+def _axis(variable: SweptVariable, *, cells: bool = False) -> VariableAxis:
     """A variable along an axis; cells: each of its values has a cell."""
     levels = variable.levels
     if variable.texts:
@@ -245,14 +245,14 @@ def _axis(variable: SweptVariable, *, cells: bool = False) -> Axis:
             named=tuple(zip(levels.tolist(), told, strict=True)),
         )  # fmt: skip
         pairs = ", ".join(f"{k} {name}" for k, name in zip(told, names, strict=True))
-        return Axis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
+        return VariableAxis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
     by_ratio = _by_ratio(levels)
     if cells:
         edges = _between(levels, by_ratio)
-        return Axis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
+        return VariableAxis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
     if by_ratio:
-        return Axis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
-    return Axis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
+        return VariableAxis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
+    return VariableAxis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
 
 
 def _by_ratio(levels: Array) -> bool:

@@ -26,7 +26,7 @@ ALMOST = 1e-6  # of a turn: a run that was to end with it
 VectorsAt = Callable[[Array], Array]  # of instants (n,) what is looked at there, (n, ...)
 
 
-class Turning(NamedTuple):
+class TurningRun(NamedTuple):
     """The instants of a run that are seen, its angle if it turns on in one, and how many turns come back (0: none)."""
 
     times: Array
@@ -60,13 +60,13 @@ def angles_of(spec: Spec) -> list[str]:
     return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
 
 
-def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> Turning:
+def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> TurningRun:
     """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
-    whole = Turning(times, "", np.zeros(0), 0)
+    whole = TurningRun(times, "", np.zeros(0), 0)
     for path in candidates:
         angles = numbers_at(study, path, times)
         if np.isfinite(angles).all() and (goes_on(angles) and span(angles) > span(whole.angles)):
-            whole = Turning(times, path, angles, 0)
+            whole = TurningRun(times, path, angles, 0)
     for turns in (1, 2):
         if whole.path and comes_back(study, whole, turns, vectors_at):
             return last_of(study, whole, turns)
@@ -84,7 +84,7 @@ def span(angles: Array) -> float:
     return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
 
 
-def comes_back(study: Study, whole: Turning, turns: int, vectors_at: VectorsAt) -> bool:
+def comes_back(study: Study, whole: TurningRun, turns: int, vectors_at: VectorsAt) -> bool:
     """Whether the last so many turns are as those before them."""
     angle = TURN * turns
     if span(whole.angles) < 2.0 * angle - ALMOST * TURN:
@@ -96,16 +96,16 @@ def comes_back(study: Study, whole: Turning, turns: int, vectors_at: VectorsAt) 
     return bool(np.nanmax(np.abs(last - before), initial=0.0) <= SAME * size)
 
 
-def last_of(study: Study, whole: Turning, turns: int) -> Turning:
+def last_of(study: Study, whole: TurningRun, turns: int) -> TurningRun:
     """The last so many turns of a run."""
     sign = 1.0 if whole.angles[-1] > whole.angles[0] else -1.0
     begin = float(instants_at(whole, np.array([whole.angles[-1] - sign * TURN * turns]))[0])
     even = np.linspace(begin, whole.times[-1], len(whole.times))
     times = np.unique(np.concatenate([even, whole.times[whole.times > begin]]))
-    return Turning(times, whole.path, numbers_at(study, whole.path, times), turns)
+    return TurningRun(times, whole.path, numbers_at(study, whole.path, times), turns)
 
 
-def instants_at(turning: Turning, angles: Array) -> Array:
+def instants_at(turning: TurningRun, angles: Array) -> Array:
     """The instants at which a run has some angles, on the line between those at which it was seen, (n,)."""
     order = slice(None) if turning.angles[-1] > turning.angles[0] else slice(None, None, -1)
     return np.asarray(np.interp(angles, turning.angles[order], turning.times[order]))
