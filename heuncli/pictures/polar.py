@@ -24,6 +24,7 @@ from heuncli.results_schema import SPACE
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.search import extremes
+from heuncli.study.search.extremes import sides_of_jumps
 from heuncli.variants.stated import unit_of
 
 HEIGHT = 460.0  # pixels
@@ -34,6 +35,7 @@ INSTANTS = 9  # marks of a run in which nothing turns on
 ROOM = (0.08, 0.04)  # of a panel's width and height: nearer to other words none are written
 HEADINGS = (0.2, 0.55, 0.9)  # of a curve's points: where its direction is shown
 HEADING, WIDE = 14.0, 700.0  # pixels: how long such an arrow is, and how wide a panel may be
+JUMP = 0.01  # of a panel's width: what is drawn as a jump
 THRUST = 1e-6  # of the largest vector: what stands across the plane and is worth a note
 
 
@@ -188,7 +190,7 @@ def _curve(
 ) -> Iterator[Item]:  # fmt: skip
     """A curve with its direction, its marks and its largest vector."""
     x, y = size * curve.x, size * curve.y
-    yield Trace(curve.name, x, y, curve.pen)
+    yield Trace(curve.name, *_broken(curve.turning.times, x, y, sides[0].high - sides[0].low), curve.pen)
     unit_a_pixel = max((sides[0].high - sides[0].low) / WIDE, (sides[1].high - sides[1].low) / HEIGHT)
     yield from _headings(x, y, curve.pen, HEADING * unit_a_pixel)
     if largest is not None and largest.size > 0.0:
@@ -205,6 +207,13 @@ def _curve(
         free = not any(_near(place, other, sides) for other in written)
         yield Spot(*place, text if free else "", curve.pen)
         written += [place] if free else []
+
+
+def _broken(times: Array, x: Array, y: Array, width: float) -> tuple[Array, Array]:
+    """The tips (n,), apart where they jump."""
+    jumps = sides_of_jumps(times) & (np.hypot(np.diff(x), np.diff(y)) > JUMP * width)
+    at = np.flatnonzero(jumps) + 1
+    return np.insert(x, at, np.nan), np.insert(y, at, np.nan)
 
 
 def _headings(x: Array, y: Array, number: int, length: float) -> Iterator[Arrow]:
@@ -278,13 +287,12 @@ def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[s
         yield f"{curve.name}: open or not known, and not drawn"
         return
     first, second = curve.plane.names
-    towards = math.degrees(math.atan2(largest.y, largest.x)) % 360.0
     when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
     if curve.turning.path:
         angle = float(np.interp(largest.at, curve.turning.times, curve.turning.counted))
         whole = 360.0 * curve.turning.turns
-        when += f", {curve.turning.path} = {angle % whole if whole else angle:.4g}°"
-    way = f"towards {towards:.4g}° from {first} to {second}"
+        when += f", {curve.turning.path} = {_degrees(angle, whole)}"
+    way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
     yield f"{curve.name}: largest {size * largest.size:.6g} {unit} {way}, {when}"
     along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
     if along > THRUST * largest.size:
@@ -294,3 +302,9 @@ def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[s
     if "1" in curve.plane.names:
         words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.up))
         yield f"{curve.name}: directions 1 and 2 are {' and '.join(words)}"
+
+
+def _degrees(angle: float, whole: float) -> str:
+    """An angle to four digits, of a circle or a cycle within that; whole: 0 where it is counted on."""
+    told = float(f"{angle % whole if whole else angle:.4g}")
+    return f"{0.0 if whole and told >= whole else told:g}°"
