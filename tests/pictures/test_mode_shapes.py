@@ -80,6 +80,13 @@ def test_modes_in_space_are_drawn(heun: Heun, name: str) -> None:
     assert max(map(len, lines)) <= 70
 
 
+def test_what_excites_is_left_out(heun: Heun) -> None:
+    heun("plot", str(SPECS / "laval.yaml"), "modes", "--without", "motor", "-o", "drawn.svg")
+    words = "\n".join(texts_of(Path("drawn.svg").read_text()))
+    assert "without drives.motor's motion, held where it starts" in words
+    assert "mode 1: 25.1331 Hz, damping 0.0500000; across.travel" in words
+
+
 def test_hostile_titles_and_what_has_no_modes(heun: Heun, folder: Path) -> None:
     (folder / "two.yaml").write_text(PENDULUM.replace("TITLE", json.dumps("<script>alert(1)</script> & \u202e")))
     assert heun("plot", "two.yaml", "modes", "-o", "drawn.svg").returncode == 0

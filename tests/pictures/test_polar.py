@@ -98,6 +98,12 @@ def test_of_one_that_does_not_the_whole_run(heun: Heun, folder: Path) -> None:
     assert np.hypot(*curve.T).max() == pytest.approx(2 * 0.1 * np.hypot(rate**2, gain), abs=panel.pixel)
 
 
+def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
+    (panel,), _ = drawn(heun, str(SPECS / "hammered_four_bar.yaml"), "polar", "foundation")
+    before, after = panel.lines("foundation.force")
+    assert np.hypot(*(after[0] - before[-1])) > 20.0
+
+
 REFUSED = [
     ((ROTOR, "polar", "joints.left.drive"), "a polar diagram is of a vector"),
     ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram is of a vector"),
