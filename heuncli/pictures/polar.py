@@ -14,6 +14,7 @@ import numpy as np
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Trace
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.certain import certain
 from heuncli.pictures.courses import Pictured, instants, vectors_at
 from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
 from heuncli.pictures.refusals import NotDrawable
@@ -63,11 +64,12 @@ class TipCurve(NamedTuple):
 
 
 class Largest(NamedTuple):
-    """The largest vector: its two parts, its magnitude in the plane, its instant."""
+    """The largest vector: its two parts, its magnitude in the plane and its stated error, its instant."""
 
     x: float
     y: float
     size: float
+    error: float
     at: float
 
 
@@ -141,13 +143,14 @@ def _largest(curve: TipCurve) -> Largest | None:
     looked_at = study.search_times
     times = curve.turning.times
     times = np.union1d(times, looked_at[(looked_at >= times[0]) & (looked_at <= times[-1])])
-    error = np.array([stated_error(study, study.numbers(curve.path).keys)])
-    found = extremes.search(sample, times, errors=error, even=np.array([True]), sides=(1.0,))
+    error = stated_error(study, study.numbers(curve.path).keys)
+    found = extremes.search(sample, times, errors=np.array([error]), even=np.array([True]), sides=(1.0,))
     at = float(found.high_at[0])
     if not np.isfinite(found.high[0]):
         return None
     vector = vectors_at(study, curve.path, np.array([at]))[0]
-    return Largest(float(vector @ plane.right), float(vector @ plane.up), math.sqrt(float(found.high[0])), at)
+    x, y = float(vector @ plane.right), float(vector @ plane.up)
+    return Largest(x, y, math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error, at)
 
 
 def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
@@ -195,9 +198,8 @@ def _curve(
     yield from _headings(x, y, curve.pen, HEADING * unit_a_pixel)
     if largest is not None and largest.size > 0.0:
         yield Arrow(0.0, 0.0, size * largest.x, size * largest.y, curve.pen)
-        yield Spot(
-            size * largest.x, size * largest.y, f"{size * largest.size:.5g} {unit}", curve.pen, "circle", filled=True
-        )
+        text = f"{certain(size * largest.size, size * largest.error)} {unit}"
+        yield Spot(size * largest.x, size * largest.y, text, curve.pen, "circle", filled=True)
         written.append((size * largest.x, size * largest.y))
     for at, text in _marks(curve.turning):
         vector = vectors_at(curve.study, curve.path, np.array([at]))[0]
@@ -293,7 +295,7 @@ def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[s
         whole = 360.0 * curve.turning.turns
         when += f", {curve.turning.path} = {_degrees(angle, whole)}"
     way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    yield f"{curve.name}: largest {size * largest.size:.6g} {unit} {way}, {when}"
+    yield f"{curve.name}: largest {certain(size * largest.size, size * largest.error)} {unit} {way}, {when}"
     along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
     if along > THRUST * largest.size:
         yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
