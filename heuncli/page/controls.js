@@ -31,7 +31,7 @@ export class Chosen {
     this.values = true;
     this.look = 1;
     this.size = 1;
-    const blow = data.count === 1 ? this.choices.find((choice) => choice.key === "blow") : null;
+    const blow = data.count === 1 ? this.choices.find((choice) => choice.frame !== undefined) : null;
     this.choice = blow ?? this.choices[0] ?? null;
     this.section =
       data.sections.find((section) => section.loads.length && section.s) ??
@@ -144,7 +144,7 @@ export function listenToTime(data, player) {
 }
 
 /** What is drawn on the machine. */
-export function listenToDrawn(chosen, changed) {
+export function listenToDrawn(chosen, player, changed) {
   const box = (id, field) => {
     by(id).checked = chosen[field];
     by(id).addEventListener("change", () => {
@@ -166,6 +166,7 @@ export function listenToDrawn(chosen, changed) {
   by("reactions").value = chosen.choice?.key ?? "";
   by("reactions").addEventListener("change", () => {
     chosen.choice = chosen.choices.find((choice) => choice.key === by("reactions").value) ?? null;
+    if (chosen.choice?.frame !== undefined) player.halt(chosen.choice.frame);
     changed();
   });
   by("size").addEventListener("input", () => {

@@ -50,7 +50,10 @@ export function readData(text) {
     }
   }
   data.rows = new Map();
-  const blocks = [...data.blocks.map((b) => [b, count]), ...data.blows.map((b) => [b, 1])];
+  const blocks = [
+    ...data.blocks.map((b) => [b, count]),
+    ...data.blows.flatMap((blow) => blow.blocks.map((b) => [b, 1])),
+  ];
   for (const [block, own] of blocks) {
     for (const group of block.groups) {
       for (const row of group.rows) {

@@ -29,6 +29,7 @@ function signsOf(chosen, data) {
   const { choice, section, load } = chosen;
   if (choice) {
     if (choice.key === "foundation") parts.push("Arrow: the force of the machine on the ground.");
+    else if (choice.frame !== undefined) parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
     else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.");
   }
   if (section && load) {
@@ -110,7 +111,7 @@ function begin() {
   by("caption").textContent = data.count > 1 ? "Numbers of this frame" : "Numbers of this instant";
   listenToView(view, player, changed);
   listenToTime(data, player);
-  listenToDrawn(chosen, changed);
+  listenToDrawn(chosen, player, changed);
   listenToSections(chosen, changed);
   listenToCurve(chosen, player, changed, () => panel);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

@@ -46,7 +46,12 @@ export function arrowChoices(data) {
     { key: "joints.moment", label: "moments of all joints", rows: wrench("", "moment") },
     ...single,
     { key: "foundation", label: "foundation: force on the ground", rows: of("foundation.force", "foundation", onAxis) },
-    { key: "blow", label: "blow: impulses of all joints", rows: wrench("impulses.0.", "force") },
+    ...data.blows.map((blow) => ({
+      key: `blow.${blow.number}`,
+      label: `${blow.words}: impulses of all joints`,
+      rows: wrench(`impulses.${blow.number}.`, "force"),
+      frame: blow.frame,
+    })),
   ].filter((choice) => choice.rows.length);
 }
 
@@ -69,12 +74,18 @@ const turning = (row) => row.path.endsWith("moment");
  * @param {number} size by how much longer than usual they are drawn
  */
 export function drawArrows(pen, view, poses, choice, frame, colours, size, tell) {
+  if (choice.frame !== undefined && choice.frame !== frame) return; // a blow is at its own instant alone
   const metres = scales(choice, view, size);
   for (const { row, at, name } of choice.rows) {
     const vector = vectorAt(row, frame);
     const start = at(poses, frame);
-    if (!start || ![...vector, ...start].every(Number.isFinite)) continue;
+    if (!start?.every(Number.isFinite)) continue;
     const [x, y] = view.project(start);
+    const many = choice.rows.length > MOST_WORDS;
+    if (!vector.every(Number.isFinite)) {
+      if (tell && !many) words(pen, `${name} open`, x + 10, y - 12, colours.faint, colours.panel);
+      continue;
+    }
     const [dx, dy, near] = view.direct(vector.map((c) => c * metres.get(row.unit)));
     const moment = turning(row);
     const colour = moment ? colours.moment : colours.force;
@@ -89,7 +100,7 @@ export function drawArrows(pen, view, poses, choice, frame, colours, size, tell)
       moment ? [6, 3] : [],
     );
     const text = written(lengthOf(vector) * row.size, row.style);
-    if (tell && choice.rows.length <= MOST_WORDS && text !== "0") {
+    if (tell && !many && text !== "0") {
       const label = `${choice.rows.length > 1 ? `${name} ` : ""}${text} ${row.unit}`;
       const [align, aside] = dx < 0 ? ["right", -6] : ["left", 6];
       words(pen, label, x + dx + aside, y + dy + (dy > 0 ? 9 : -9), colour, colours.panel, align);
