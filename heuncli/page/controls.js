@@ -13,6 +13,7 @@ const LOOKS = [
   [0.35, "glass"],
   [0, "edges"],
 ];
+const MANY_ARROWS = 40;
 const MANY_NAMES = 7;
 const MOST_BUTTONS = 8;
 const STEP = 1.15;
@@ -32,7 +33,8 @@ export class Chosen {
     this.look = 1;
     this.size = 1;
     const blow = data.count === 1 ? this.choices.find((choice) => choice.frame !== undefined) : null;
-    this.choice = blow ?? this.choices[0] ?? null;
+    const whole = data.scene.joints.length > MANY_ARROWS && this.choices.find((choice) => choice.key === "foundation");
+    this.choice = blow || whole || this.choices[0] || null;
     this.section =
       data.sections.find((section) => section.loads.length && section.s) ??
       data.sections.find((section) => section.loads.length) ??

@@ -9,6 +9,8 @@ import { words } from "./strokes.js";
 import { drawCorner, drawGroundPoint, drawJoint, drawLine } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 
+const MANY = 40; // joints
+
 /** Where a body's name stands: the middle of what is drawn of it, body axes [m]. */
 function middleOf(body) {
   if (body.middle) return body.middle;
@@ -50,7 +52,8 @@ export function drawMachine(canvas, data, view, shown, colours) {
   paintBodies(painter, scene, poses, view, colours);
   painter.paint(shown.look);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
-  for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours);
+  const small = scene.joints.length > MANY;
+  for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);
   if (shown.load)
     drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
   if (shown.names)
