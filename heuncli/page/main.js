@@ -84,14 +84,8 @@ function begin() {
   function draw() {
     waiting = false;
     const { frame, share } = player;
-    const { names, values, look, size, choice } = chosen;
-    drawMachine(
-      by("machine"),
-      data,
-      view,
-      { frame, share, names, values, look, size, choice, load: chosen.drawn },
-      colours.now,
-    );
+    const shown = { frame, share, ...chosen.shown };
+    drawMachine(by("machine"), data, view, shown, colours.now);
     if (data.count > 1 && chosen.course) {
       panel = drawCurve(by("curve"), data, chosen.course, frame, colours.now);
       tellCurve(chosen.course, frame);

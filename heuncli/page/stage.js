@@ -3,6 +3,7 @@
 import { cleared } from "./canvases.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
 import { Painter } from "./painter.js";
+import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { words } from "./strokes.js";
@@ -40,7 +41,7 @@ function drawNames(pen, scene, poses, view, colours, told) {
 /**
  * The machine at a frame.
  * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
- * @param {object} shown frame, share, look, names, values, choice (arrows or null), load (or null), size
+ * @param {object} shown the frame and what is chosen to be drawn
  */
 export function drawMachine(canvas, data, view, shown, colours) {
   const { pen, width, height } = cleared(canvas);
@@ -48,6 +49,7 @@ export function drawMachine(canvas, data, view, shown, colours) {
   const { scene } = data;
   const poses = posesAt(scene, shown.frame, shown.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);
+  if (shown.paths) drawPaths(pen, view, data, colours);
   const painter = new Painter(pen);
   paintBodies(painter, scene, poses, view, colours);
   painter.paint(shown.look);
