@@ -8,6 +8,7 @@ from typing import Any
 
 from heuncli.cli.entry import worst
 from heuncli.cli.output import emit
+from heuncli.cli.solving import require_cases
 from heuncli.cli.units import TABLES, say_what_stays
 from heuncli.commands.run.scene import RunTask, leave, solved
 from heuncli.foreign_text import shown
