@@ -61,9 +61,9 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of drawing/picture.py.
+    """A marked place with its words, above it or below; shape: one of drawing/picture.py.
 
-    note: what is told of it below the panels where the words find no room; the words where it is empty.
+    note: what is told of it under the panels where the words find no room; the words where it is empty.
     """
 
     x: float
@@ -73,14 +73,28 @@ class Spot(NamedTuple):
     shape: str = "circle"
     filled: bool = False
     note: str = ""
+    below: bool = False
+
+
+class Words(NamedTuple):
+    """A few words, or a sign, about a place, without a mark."""
+
+    x: float
+    y: float
+    text: str
+    pen: int | None = None
 
 
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot."""
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; above: these stand above the panel.
+
+    note: as of a spot.
+    """
 
     x: float
     text: str
     note: str = ""
+    above: bool = False
 
 
 class Blank(NamedTuple):
@@ -112,7 +126,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):

@@ -23,6 +23,7 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
+    Words,
 )
 from heuncli.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
@@ -58,9 +59,11 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
     told: list[str] = []
     for panel in figure.panels:
         y += LINE + 4.0 if panel.title else 6.0
+        head = y - 6.0
+        y += LINE * any(isinstance(item, Upright) and item.above for item in panel.items)
         box = _box(panel, y, width)
         if panel.title:
-            shapes.append(Text(box.left, y - 6.0, shown(panel.title), NAME, bold=True))
+            shapes.append(Text(box.left, head, shown(panel.title), NAME, bold=True))
         drawn, without_words = _panel(panel, box, width)
         shapes += drawn
         told += without_words
@@ -230,9 +233,16 @@ def _spot(item: Spot, box: Box) -> Iterator[Shape]:
     yield Mark(box.x(item.x), box.y(item.y), item.shape, colour, item.filled, SPOT)
 
 
+def _words(item: Words, box: Box) -> Iterator[Shape]:
+    colour = BLACK if item.pen is None else pen(item.pen).colour
+    yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
+
+
 def _upright(item: Upright, box: Box) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
+    if item.above:
+        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
 def _blank(item: Blank, box: Box) -> Iterator[Shape]:
@@ -247,7 +257,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
         low, high = max(left, x), min(right, x + height)
         if low < high:
             yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
-    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY, halo=True)
+    yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY, halo=True)
 
 
 def _bars(item: Bars, box: Box) -> Iterator[Shape]:
@@ -276,8 +286,8 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 

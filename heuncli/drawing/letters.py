@@ -7,7 +7,7 @@ letter stands at some places of a curve, and where there is no braille it is dra
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -28,6 +28,7 @@ from heuncli.drawing.figure import (
     Strokes,
     Trace,
     Upright,
+    Words,
 )
 from heuncli.drawing.pens import pen
 from heuncli.drawing.room import Field, WordBox, columns_of, left_out
@@ -124,9 +125,9 @@ class Canvas:
             self.words |= {cell: (letter, number) for cell, letter in cells}
             self.room.take(WordBox(begin, row, begin + columns_of(text), row + 1))
 
-    def beside(self, text: str, column: int, row: int, number: int) -> bool:
+    def beside(self, text: str, column: int, row: int, number: int, *, below: bool = False) -> bool:
         """Words beside a cell, where there is room for them; whether there is."""
-        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0)
+        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0, below=below)
         if found is not None:
             self._put(text, found, number)
         return found is not None
@@ -237,13 +238,15 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     for item in panel.items:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
-    told = _words(panel.items, canvas)
+    told = _spoken(panel.items, canvas)
     if look.letters and look.braille:
         _named(panel.items, canvas)
     heads = wrapped(shown(" ".join(part for part in (panel.title, _upward(panel)) if part)), look.width, 0)
     lines = [*(head for head in heads if head)]
     if panel.bare:
         return lines + canvas.lines(), told
+    above = {round(canvas.x(i.x)) // canvas.per_x: i.text for i in panel.items if isinstance(i, Upright) and i.above}
+    lines += [_placed(above, canvas)] if above else []
     marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
     for row, text in enumerate(canvas.lines()):
         lines.append(
@@ -254,19 +257,19 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     return lines + _below(panel, canvas), told
 
 
-def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
+def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
     """The words of spots and vertical marks where they find room; what is told of the others."""
     told: list[str] = []
     for item in in_turn(items):
-        if item.text:
-            column = round(canvas.x(item.x)) // canvas.per_x
-            if isinstance(item, Upright):
-                has_room = canvas.along(shown(item.text), column)
-            else:
-                row = round(canvas.y(item.y)) // canvas.per_y
-                has_room = canvas.beside(shown(item.text), column, row, NOBODY if item.pen is None else item.pen)
-            if not has_room:
-                told.append(item.note or item.text)
+        column = round(canvas.x(item.x)) // canvas.per_x
+        if isinstance(item, Upright):
+            has_room = canvas.along(shown(item.text), column)
+        else:
+            row = round(canvas.y(item.y)) // canvas.per_y
+            number = NOBODY if item.pen is None else item.pen
+            has_room = canvas.beside(shown(item.text), column, row, number, below=item.below)
+        if not has_room:
+            told.append(item.note or item.text)
     return told
 
 
@@ -309,13 +312,20 @@ def _below(panel: Panel, canvas: Canvas) -> list[str]:
     lines = [f"{'':{LABEL}} {corner}{axis}"]
     if not panel.x.label:
         return lines
-    under = [" "] * (canvas.columns + LABEL + 12)
-    for place, text in sorted(places.items()):
-        begin = max(place - len(text) // 2, 0) + LABEL + 2
-        if all(c == " " for c in under[max(begin - 1, 0) : begin + len(text) + 1]):
-            under[begin : begin + len(text)] = shown(text)
     middle = max(0, (canvas.columns - len(panel.x.label)) // 2)
-    return [*lines, "".join(under).rstrip(), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+
+
+def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
+    """A line with words about columns of a panel, as many as do not touch; none goes farther than the panel's edge."""
+    most = canvas.columns + LABEL + 2
+    line = [" "] * most
+    for place, words in sorted(places.items()):
+        text = shown(words)
+        begin = min(max(place - len(text) // 2, 0) + LABEL + 2, most - len(text))
+        if begin >= 0 and all(c == " " for c in line[max(begin - 1, 0) : begin + len(text) + 1]):
+            line[begin : begin + len(text)] = text
+    return "".join(line).rstrip()
 
 
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
@@ -361,6 +371,11 @@ def _spot(item: Spot, canvas: Canvas) -> None:
     canvas.write(_mark(item.shape, canvas.look, number), column, row, number)
 
 
+def _words(item: Words, canvas: Canvas) -> None:
+    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+    canvas.write(shown(item.text), column - columns_of(shown(item.text)) // 2, row)
+
+
 def _upright(item: Upright, canvas: Canvas) -> None:
     x = canvas.x(item.x)
     canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, NOBODY, DOWN if canvas.look.braille else 1)
@@ -368,6 +383,9 @@ def _upright(item: Upright, canvas: Canvas) -> None:
 
 def _blank(item: Blank, canvas: Canvas) -> None:
     left, right = (round(canvas.x(x)) // canvas.per_x for x in (item.low, item.high))
+    text = f" {shown(item.text)} "
+    if item.text and len(text) <= right - left + 1:
+        canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 3)
     for row in range(canvas.rows):
         for column in range(max(left, 0), min(right + 1, canvas.columns)):
             canvas.dots[row, column] = 0
@@ -405,6 +423,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

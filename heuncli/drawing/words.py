@@ -28,18 +28,20 @@ def words(items: Sequence[Item], box: Box, drawn: Sequence[Shape], room: WordBox
     texts: list[Shape] = []
     told: list[str] = []
     for item in in_turn(items):
-        if item.text:
-            text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
-            if text is None:
-                told.append(item.note or item.text)
-            else:
-                texts.append(text)
+        text = _upright(item, box, field) if isinstance(item, Upright) else _spot(item, box, field)
+        if text is None:
+            told.append(item.note or item.text)
+        else:
+            texts.append(text)
     return texts, told
 
 
 def in_turn(items: Sequence[Item]) -> list[Spot | Upright]:
     """What has words, in the order in which these look for room: numbers at marks first."""
-    return [item for kind in (Spot, Upright) for item in items if isinstance(item, kind)]
+    return [
+        item for kind in (Spot, Upright) for item in items
+        if isinstance(item, kind) and item.text and not (isinstance(item, Upright) and item.above)
+    ]  # fmt: skip
 
 
 def wide(text: str, size: float) -> float:
@@ -77,7 +79,7 @@ def _spot(item: Spot, box: Box, field: Field) -> Text | None:
     """The words beside a mark."""
     text = shown(item.text)
     mark = Mark(box.x(item.x), box.y(item.y), item.shape, BLACK, item.filled, SPOT + NEAR)
-    found = field.beside(_about(mark), wide(text, SMALL), HIGH * SMALL)
+    found = field.beside(_about(mark), wide(text, SMALL), HIGH * SMALL, below=item.below)
     if found is None:
         return None
     colour = BLACK if item.pen is None else pen(item.pen).colour
