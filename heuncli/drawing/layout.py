@@ -158,7 +158,7 @@ def _axes(box: Box) -> Iterator[Shape]:
         yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
         yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    yield Line((*corners, corners[0]), GREY, 0.8)
+    yield Line((*corners, corners[0]), BLACK, 0.8)
     if box.across.label:
         yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
     if box.up.label:

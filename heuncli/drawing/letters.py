@@ -127,25 +127,26 @@ class Canvas:
 
     def beside(self, text: str, column: int, row: int, number: int, *, below: bool = False) -> bool:
         """Words beside a cell, where there is room for them; whether there is."""
-        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0, below=below)
+        mark = WordBox(column, row, column + 1, row + 1)
+        found = self.room.beside(mark, columns_of(text) + 2, 1.0, below=below)  # with a blank at both sides
         if found is not None:
-            self._put(text, found, number)
+            self._put(text, int(found.left) + 1, int(found.top), number)
         return found is not None
 
     def along(self, text: str, column: int) -> bool:
         """Words in one of the upper rows, at the right or left of a column; whether there is room."""
         wide = columns_of(text)
         found = self.room.best(
-            (2.0 * row, WordBox(left, row, left + wide + 1, row + 1))  # and a blank behind it
+            (2.0 * row, WordBox(left, row, left + wide + 2, row + 1))
             for row in range(min(UPPER, self.rows))
-            for left in (column + 1, column - wide - 1)
+            for left in (column, column - wide - 2)
         )
         if found is not None:
-            self._put(text, found, NOBODY)
+            self._put(text, int(found.left) + 1, int(found.top), NOBODY)
         return found is not None
 
-    def _put(self, text: str, box: WordBox, number: int) -> None:
-        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, int(box.left), int(box.top))}
+    def _put(self, text: str, column: int, row: int, number: int) -> None:
+        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, column, row)}
 
     def lines(self) -> list[str]:
         """The rows as text."""
@@ -331,8 +332,9 @@ def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
     """The dots of a line through points."""
     points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    if len(points) == 1 and math.isfinite(sum(points[0])):
-        canvas.dot(*points[0], number)
+    for x0, y0 in points if len(points) == 1 or not np.isfinite(y).all() else ():  # some may stand alone
+        if math.isfinite(x0 + y0):
+            canvas.dot(x0, y0, number)
     for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
             canvas.line(x0, y0, x1, y1, number, every)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from heuncli.named_tuples import NamedTuple
 
-BLACK, GREY, DIM, GRID, FAINT = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6"
+BLACK, GREY, DIM, GRID, FAINT = "#000000", "#444444", "#888888", "#c4c4c4", "#e2e2e2"
 
 
 class Pen(NamedTuple):

@@ -12,7 +12,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.ask.curves import numbers_at
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak, several
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
 from heuncli.variants.stated import error_of, unit_of
@@ -68,13 +68,20 @@ def jumps_of(course: Course) -> Array:
 
 def course_of(study: Study, path: str, times: Array) -> Course:
     """The course of a number, of a vector its magnitude. Raises NotOneNumber, SpecError [unknown-path]."""
-    numbers = study.numbers(path)
-    if not numbers.timed:
-        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+    require_one_number(study, path)
     low, high = (peak(study, path, how) for how in ("min", "max"))
     values = values_at(study, path, times)
     error = error_of(MeasureRequest("abs", path), high, study)
     return Course(path, unit_of(path, study.spec), times, values, error, low, high)
+
+
+def require_one_number(study: Study, path: str) -> None:
+    """Raise NotOneNumber for what has no instants, and for what is no one number or vector at each of them."""
+    numbers = study.numbers(path)
+    if not numbers.timed:
+        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+    if numbers.axes and not (numbers.of_vectors and len(numbers.axes) == 1):
+        raise several(path, numbers)
 
 
 def values_at(study: Study, path: str, times: Array) -> Array:

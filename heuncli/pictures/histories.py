@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Course, Pictured, course_of, instants, values_at
+from heuncli.pictures.courses import Course, Pictured, course_of, instants, require_one_number, values_at
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measurements import Measured, seen
 from heuncli.report.digits import rough
@@ -20,7 +20,7 @@ from heuncli.study.ask.measure import Peak
 from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
-VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
+VISIBLE = 0.5  # pixels: half of a band, below which that of an error is not seen
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
 STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
@@ -74,7 +74,7 @@ def history(
         y = _axis_up(unit, own, [each for _, each in here], units)
         size = units.of(unit)[1]
         words = marks if not panels else [Upright(mark.x, "") for mark in marks]
-        items = [*words, *_blanks(sources, own, x, across), *_curves(own, y, size, across)]
+        items = [*words, *_blanks(sources, own, x, across), *_curves(own, y, size, across, height)]
         items += [item for pen, each in here for item in seen(each, pen, across.size, size)]
         panels.append(Panel(x._replace(label=""), y, tuple(items), height))
     panels[-1] = panels[-1]._replace(x=x)
@@ -93,6 +93,8 @@ def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) 
     number = 0
     for source in sources:
         times = instants(source.study)
+        for path in (*paths, *([] if over is None else [over])):
+            require_one_number(source.study, path)
         x = times if over is None else values_at(source.study, over, times)
         for path in dict.fromkeys(paths):
             name = f"{source.name}: {path}" if source.name else path
@@ -158,12 +160,12 @@ def _blanks(sources: Sequence[Pictured], drawn: Sequence[Drawn], x: Scaling, acr
         yield Blank(claimed, x.high, OVER_NOTHING)
 
 
-def _curves(drawn: Sequence[Drawn], y: Scaling, size: float, across: Across) -> Iterator[Item]:
+def _curves(drawn: Sequence[Drawn], y: Scaling, size: float, across: Across, height: float) -> Iterator[Item]:
     """The curves with the bands of their errors, where these are seen, and their extremes."""
     for each in drawn:
         values, x = size * each.course.values, across.size * each.x
         error = size * (each.course.error or 0.0)
-        if error > VISIBLE * (y.high - y.low) and np.isfinite(error):
+        if error * height > VISIBLE * (y.high - y.low) and np.isfinite(error):
             yield Band(f"stated error of {each.name}", x, values - error, values + error, each.pen)
         yield Trace(each.name, x, values, each.pen)
     for each in drawn:

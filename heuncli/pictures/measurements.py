@@ -60,8 +60,8 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
     """
     try:
         text = bytes(read_bytes(asked.file, LARGEST)).decode("utf-8-sig")
-        names = [_full_name(word, layout_of(text).names) for word in (asked.x, asked.y)]
-        x, y = (np.frombuffer(column) for column in columns_of(text, *names))
+        heads = layout_of(text).names
+        x, y = (np.frombuffer(column) for column in columns_of(text, *(_full_name(word, heads) for word in asked[2:])))
     except UnicodeDecodeError:
         raise _refused(asked, Finding("table-file", "it is not UTF-8", "save it as CSV in UTF-8")) from None
     except Finding as finding:
@@ -70,11 +70,11 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
         raise _refused(asked, error.finding) from None
     except CsvError as error:
         raise _refused(asked, error.finding, (error.line, error.column)) from None
-    over = _in_si(asked, names[0], x, [x_unit])
-    up = _in_si(asked, names[1], y, units)
+    over = _in_si(asked, _head_of(asked.x, heads), x, [x_unit])
+    up = _in_si(asked, head := _head_of(asked.y, heads), y, units)
     for values in (over[1], up[1]):
         _require_in_range(asked, values, text)
-    return Measured(f"{asked.file}: {names[1]}", up[0], over[1], up[1])
+    return Measured(f"{asked.file}: {head}", up[0], over[1], up[1])
 
 
 def _full_name(word: str, names: Sequence[str]) -> str:
@@ -82,6 +82,12 @@ def _full_name(word: str, names: Sequence[str]) -> str:
     if word in names or counted(word) is not None:
         return word
     return next((name for name in names if heading(name)[0] == word), word)
+
+
+def _head_of(word: str, names: Sequence[str]) -> str:
+    """The whole heading of a column, of a counted one, too."""
+    place = counted(word)
+    return names[place - 1] if place is not None and place <= len(names) else _full_name(word, names)
 
 
 def _in_si(asked: AskedPoints, name: str, values: Array, units: Sequence[str]) -> tuple[str, Array]:

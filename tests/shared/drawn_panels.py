@@ -82,7 +82,7 @@ def panel(shapes: Sequence[ElementTree.Element], frame: Array, across: tuple[flo
             areas[name] = turned(at)
         elif name:
             curves.setdefault(name, []).append(turned(at))
-        elif len(at) == 2 and shape.get("stroke") not in (BLACK, "#e2e2e2", "#444444", "#c4c4c4"):
+        elif len(at) == 2 and shape.get("stroke") not in (BLACK, "#e2e2e2", "#444444", "#888888", "#c4c4c4"):
             strokes.append(turned(at))
     circles = [s for s in shapes if s.tag == f"{SPACE}circle" and top <= float(s.get("cy", 0)) <= bottom]
     marks = np.array([[float(s.get("cx", 0)), float(s.get("cy", 0))] for s in circles]).reshape(-1, 2)
