@@ -7,7 +7,6 @@ passes. Where words or marks stand there is no room at any price.
 from __future__ import annotations
 
 import math
-import unicodedata
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -116,6 +115,8 @@ def columns_of(text: str) -> int:
     """How many cells a text takes in a terminal: two for a wide letter, none for one that stands over another."""
     if text.isascii():
         return len(text)
+    import unicodedata  # few words have other letters
+
     return sum(0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in text)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.study.ask.curves import numbers_at
+from heuncli.study.ask import curves
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak, several
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
@@ -86,7 +86,7 @@ def require_one_number(study: Study, path: str) -> None:
 
 def values_at(study: Study, path: str, times: Array) -> Array:
     """The number at a path at some instants, (n,); of a vector its magnitude."""
-    if not study.numbers(path).of_vectors:
-        return numbers_at(study, path, times)
-    parts = [numbers_at(study, f"{path}.{axis}", times) for axis in "xyz"]
-    return np.asarray(np.sqrt(sum(part * part for part in parts)))
+    values = curves.values_at(study, path, times)
+    if study.numbers(path).of_vectors:
+        return np.asarray(np.sqrt(np.einsum("nk,nk->n", values, values)))
+    return values.reshape(len(times))

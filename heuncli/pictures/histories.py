@@ -12,7 +12,7 @@ from heuncli.drawing.ticks import ends, short
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Course, Pictured, course_of, instants, require_one_number, values_at
 from heuncli.pictures.happenings import instant, marks_of
-from heuncli.pictures.measurements import Measured, seen
+from heuncli.pictures.measured_points import Measured, seen
 from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array

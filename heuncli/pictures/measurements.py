@@ -1,4 +1,4 @@
-"""Measured points over a history: from the column of a CSV file to what is drawn. Impure: reads files.
+"""The file of measured points: two columns of a CSV. Impure: reads files.
 
 A column is named as its first row has it, with its unit or without (F, of F [kN] or F/kN), or by its number from 1.
 Numbers are in the unit that stands behind the name; without one in SI.
@@ -6,15 +6,15 @@ Numbers are in the unit that stands behind the name; without one in SI.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Item, Spot, Trace
 from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.expressions.units import NUMBER, Dimension, describe, parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.number_range import are_in_range, out_of_range
+from heuncli.pictures.measured_points import Measured
 from heuncli.results import Array
 from heuncli.results_schema import counted
 from heuncli.spec.columns import CsvError, NoColumn, columns_of, layout_of, rows_of
@@ -22,18 +22,7 @@ from heuncli.spec.headings import heading
 from heuncli.spec.reading import read_bytes
 
 LARGEST = 200_000_000  # bytes
-MOST_SPOTS = 150  # points that are told apart; more are drawn as a line
-SEEN = 1000  # stretches of a long line, in each of which its least and its greatest are drawn
 FORM = "such as --with bench.csv:t:F, columns by the names in the first row or by numbers from 1"
-
-
-class Measured(NamedTuple):
-    """Points that were measured, (n,): over what a panel shows, in SI, and of which unit."""
-
-    name: str
-    unit: str
-    x: Array
-    y: Array
 
 
 class AskedPoints(NamedTuple):
@@ -126,18 +115,3 @@ def _refused(asked: AskedPoints, finding: Finding, at: tuple[int, int] | None = 
     message = f"--with {asked.words}: {finding.message}"
     place = SourceLocation(asked.file, *at) if at is not None else None
     return SpecError(Problem(finding.code, message, place, finding.hint))
-
-
-def seen(points: Measured, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
-    """Squares, or where there are many a thin line through them; sizes: from SI to the units that are shown."""
-    x, y = size_x * points.x, size_y * points.y
-    if len(x) <= MOST_SPOTS:
-        for a, b in zip(x.tolist(), y.tolist(), strict=True):
-            yield Spot(a, b, "", pen, "square")
-        return
-    if len(x) > 2 * SEEN:
-        parts = np.array_split(np.arange(len(y)), SEEN)
-        ends = [(part[np.argmin(y[part])], part[np.argmax(y[part])]) for part in parts]
-        kept = np.unique(np.array(ends))
-        x, y = x[kept], y[kept]
-    yield Trace(points.name, x, y, pen, thin=True)

@@ -13,7 +13,7 @@ from heuncli.commands.plot.request import PlotRequest
 from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.histories import history
-from heuncli.pictures.measurements import Measured, asked_points, measured
+from heuncli.pictures.measured_points import Measured
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
@@ -40,4 +40,6 @@ def _points(asked: PlotAsked, request: PlotRequest, spec: Spec) -> list[Measured
 
 
 def _measured(words: str, x_unit: str, kinds: Sequence[str]) -> Measured:
+    from heuncli.pictures.measurements import asked_points, measured  # few pictures have any
+
     return measured(asked_points(words), x_unit, kinds)
