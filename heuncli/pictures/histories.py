@@ -24,6 +24,7 @@ VISIBLE = 0.5  # pixels: half of a band, below which that of an error is not see
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
 STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
+OF_PATHS = 480.0  # pixels at most, of the path of a point
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
 ALL_OPEN = "open: the laws of rigid bodies do not give this number"
 # what is measured in a unit, as axes tell it
@@ -67,16 +68,18 @@ def history(
         groups.setdefault(each.course.unit, []).append(each)
     x = _axis_across(sources, drawn, measured, across)
     marks, notes = ([], []) if over is not None else marks_of(sources, [each.course for each in drawn])
-    height = HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
+    # a length over a length is the path of a point: a circle is to be seen as one
+    equal = over is not None and list(groups) == ["m"] and unit_of(over, sources[0].study.spec) == "m"
+    height = OF_PATHS if equal else HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
     panels: list[Panel] = []
     for unit, own in groups.items():
         here = [(len(drawn) + k, each) for k, each in enumerate(measured) if each.unit == unit]
         y = _axis_up(unit, own, [each for _, each in here], units)
         size = units.of(unit)[1]
         words = marks if not panels else [Upright(mark.x, "") for mark in marks]
-        items = [*words, *_blanks(sources, own, x, across), *_curves(own, y, size, across, height)]
-        items += [item for pen, each in here for item in seen(each, pen, across.size, size)]
-        panels.append(Panel(x._replace(label=""), y, tuple(items), height))
+        points = [item for pen, each in here for item in seen(each, pen, across.size, size)]
+        items = [*words, *_blanks(sources, own, x, across), *points, *_curves(own, y, size, across, height)]
+        panels.append(Panel(x._replace(label=""), y, tuple(items), height, equal))
     panels[-1] = panels[-1]._replace(x=x)
     return Figure(
         " · ".join(dict.fromkeys(source.study.results.title for source in sources)),

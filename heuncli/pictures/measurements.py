@@ -1,7 +1,7 @@
 """The file of measured points: two columns of a CSV. Impure: reads files.
 
 A column is named as its first row has it, with its unit or without (F, of F [kN] or F/kN), or by its number from 1.
-Numbers are in the unit that stands behind the name; without one in SI.
+Numbers are in the unit that stands behind the name there or in what is asked for (2[kN]); without one in SI.
 """
 
 from __future__ import annotations
@@ -34,6 +34,13 @@ class AskedPoints(NamedTuple):
     y: str
 
 
+class CsvColumn(NamedTuple):
+    """By what the columns of a file are read, and its unit; empty: SI."""
+
+    key: str
+    unit: str
+
+
 def asked_points(words: str) -> AskedPoints:
     """What FILE:X:Y names; a file's own name may hold colons, columns none. Raises SpecError."""
     file, *columns = words.rsplit(":", 2)
@@ -50,7 +57,8 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
     try:
         text = bytes(read_bytes(asked.file, LARGEST)).decode("utf-8-sig")
         heads = layout_of(text).names
-        x, y = (np.frombuffer(column) for column in columns_of(text, *(_full_name(word, heads) for word in asked[2:])))
+        columns = [_column(asked, word, heads) for word in (asked.x, asked.y)]
+        x, y = (np.frombuffer(column) for column in columns_of(text, *(column.key for column in columns)))
     except UnicodeDecodeError:
         raise _refused(asked, Finding("table-file", "it is not UTF-8", "save it as CSV in UTF-8")) from None
     except Finding as finding:
@@ -59,29 +67,34 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
         raise _refused(asked, error.finding) from None
     except CsvError as error:
         raise _refused(asked, error.finding, (error.line, error.column)) from None
-    over = _in_si(asked, _head_of(asked.x, heads), x, [x_unit])
-    up = _in_si(asked, head := _head_of(asked.y, heads), y, units)
+    over = _in_si(asked, asked.x, columns[0].unit, x, [x_unit])
+    up = _in_si(asked, asked.y, columns[1].unit, y, units)
     for values in (over[1], up[1]):
         _require_in_range(asked, values, text)
-    return Measured(f"{asked.file}: {head}", up[0], over[1], up[1])
+    return Measured(f"{asked.file}: {asked.y}", up[0], over[1], up[1])
 
 
-def _full_name(word: str, names: Sequence[str]) -> str:
-    """The whole heading of a column that is named without its unit; the word where there is none such."""
-    if word in names or counted(word) is not None:
-        return word
-    return next((name for name in names if heading(name)[0] == word), word)
+def _column(asked: AskedPoints, word: str, heads: Sequence[str]) -> CsvColumn:
+    """A column by its whole heading, by its name without the unit, or by its number, with a unit behind it or without.
+
+    Raises SpecError where the file says another unit.
+    """
+    name, unit = heading(word)
+    if word in heads or not name:
+        return CsvColumn(word, heading(word)[1])
+    place = counted(name)
+    head = next((head for head in heads if heading(head)[0] == name), name)
+    if place is not None and name not in heads:
+        head = heads[place - 1] if 0 < place <= len(heads) else ""
+    said = heading(head)[1]
+    if unit and said and unit != said:
+        finding = Finding("table-file", f"column '{head}' is in {said}, not in {unit}", "leave the unit out")
+        raise _refused(asked, finding)
+    return CsvColumn(name if place is not None and name not in heads else head, unit or said)
 
 
-def _head_of(word: str, names: Sequence[str]) -> str:
-    """The whole heading of a column, of a counted one, too."""
-    place = counted(word)
-    return names[place - 1] if place is not None and place <= len(names) else _full_name(word, names)
-
-
-def _in_si(asked: AskedPoints, name: str, values: Array, units: Sequence[str]) -> tuple[str, Array]:
-    """Of which of the units a column is, and its numbers in SI."""
-    own = heading(name)[1]
+def _in_si(asked: AskedPoints, name: str, own: str, values: Array, units: Sequence[str]) -> tuple[str, Array]:
+    """Of which of the units a column in a unit of its own (empty: none) is, and its numbers in SI."""
     if not own:
         return units[0], values
     try:

@@ -38,7 +38,7 @@ def squares(panel: DrawnPanel, folder: Path) -> Array:
     return np.array(found)
 
 
-@pytest.mark.parametrize("columns", ["t:F", "1:2", "t [ms]:F [kN]", "t:2"])
+@pytest.mark.parametrize("columns", ["t:F", "1:2", "t [ms]:F [kN]", "t:2", "t[ms]:2 [kN]", "1 [ms]:F[kN]", "1:F/kN"])
 def test_columns_are_named_or_counted_and_have_their_units(heun: Heun, bench: Path, columns: str) -> None:
     (panel,) = drawn(heun, bench, FORCE, "--with", f"bench.csv:{columns}")
     at = squares(panel, bench)
@@ -46,6 +46,13 @@ def test_columns_are_named_or_counted_and_have_their_units(heun: Heun, bench: Pa
     pixels = np.diff(at[1:], axis=0)
     assert pixels[:, 0] * panel.across == pytest.approx([0.25, 0.25], abs=panel.across)
     assert -pixels[:, 1] * panel.pixel == pytest.approx([2.0, 2.0], abs=panel.pixel)
+
+
+def test_a_unit_that_the_file_does_not_say_is_said_with_the_column(heun: Heun, bench: Path) -> None:
+    (panel,) = drawn(heun, bench, FORCE, "--with", "bench.csv:t:plain[kg m/s^2]")
+    assert len(squares(panel, bench)) == 4 and panel.label == "force [N]"
+    done = heun("plot", "swinging.yaml", FORCE, "--with", "bench.csv:t:F[N]")
+    assert done.returncode == 2 and "column 'F [kN]' is in kN, not in N" in done.stderr
 
 
 def test_they_stand_in_the_panel_of_their_kind(heun: Heun, bench: Path) -> None:
