@@ -61,7 +61,7 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words, above it or below; shape: one of drawing/picture.py.
+    """A marked place with its words; shape: one of drawing/picture.py.
 
     note: what is told of it under the panels where the words find no room; the words where it is empty.
     """
@@ -73,7 +73,6 @@ class Spot(NamedTuple):
     shape: str = "circle"
     filled: bool = False
     note: str = ""
-    below: bool = False
 
 
 class Words(NamedTuple):
@@ -86,9 +85,9 @@ class Words(NamedTuple):
 
 
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words; above: these stand above the panel.
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot.
 
-    note: as of a spot.
+    above: the words stand above the panel.
     """
 
     x: float

@@ -45,6 +45,7 @@ LETTER = 0.56  # of the size of letters: their mean width in a sentence
 PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # pixels at least
 HEAD = 8.0  # the head of an arrow
 HATCH = 9.0  # between the lines of a hatch
+SEAM = 0.5  # pixels by which a cell goes under the next, else the ground is seen between them
 MARGIN = 8.0  # of the picture, where words may stand beside a panel without axes
 CLOSE = 2.0  # pixels: vertical marks that are closer are one
 POINT = 1.6  # half the size of a point of a curve that stands alone
@@ -167,7 +168,7 @@ def _axes(box: Box) -> Iterator[Shape]:
 
 
 def _is_zero(value: float, scaling: Scaling) -> bool:
-    return value == 0.0 and not scaling.logarithmic
+    return value == 0.0 and not scaling.logarithmic and not scaling.named
 
 
 def _shapes(item: Item, box: Box) -> Iterator[Shape]:
@@ -265,9 +266,9 @@ def _bars(item: Bars, box: Box) -> Iterator[Shape]:
     step = float(np.diff(item.x).min()) if len(item.x) > 1 else 1.0
     half = min(0.3 * abs(box.x(step) - box.x(0.0)), 15.0)
     for x, y in box.points(item.x, item.y).tolist():
-        yield Area(
-            ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero)), own.colour, 0.85, shown(item.name)
-        )
+        if math.isfinite(y):
+            corners = ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero))
+            yield Area(corners, own.colour, 0.85, shown(item.name))
 
 
 def _cells(item: Cells, box: Box) -> Iterator[Shape]:
@@ -277,11 +278,14 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
     )
     known = item.values[np.isfinite(item.values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    there = np.pad(np.isfinite(item.values), ((0, 1), (0, 1)))
     for j, row in enumerate(item.values.tolist()):
         for i, value in enumerate(row):
-            if math.isfinite(value):
+            if there[j, i]:
                 share = (value - low) / (high - low) if high > low else 0.5
-                corners = ((xs[i], ys[j]), (xs[i + 1], ys[j]), (xs[i + 1], ys[j + 1]), (xs[i], ys[j + 1]))
+                right = xs[i + 1] + (SEAM if there[j, i + 1] else 0.0)
+                upper = ys[j + 1] - (SEAM if there[j + 1, i] else 0.0)
+                corners = ((xs[i], ys[j]), (right, ys[j]), (right, upper), (xs[i], upper))
                 yield Area(tuple((float(a), float(b)) for a, b in corners), shade(share), 1.0)
 
 

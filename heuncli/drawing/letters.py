@@ -46,8 +46,8 @@ ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
-SHADES = " ░▒▓█"
-PLAIN_SHADES = " .:*#"
+SHADES = "·░▒▓█"  # what is not known is blank
+PLAIN_SHADES = ".:*#@"
 RESET = "\x1b[0m"
 NOBODY, SEVERAL = -1, -2  # in place of a pen: what is of no curve, and of more than one
 LETTERS = 3  # of its pen along a curve
@@ -125,10 +125,10 @@ class Canvas:
             self.words |= {cell: (letter, number) for cell, letter in cells}
             self.room.take(WordBox(begin, row, begin + columns_of(text), row + 1))
 
-    def beside(self, text: str, column: int, row: int, number: int, *, below: bool = False) -> bool:
+    def beside(self, text: str, column: int, row: int, number: int) -> bool:
         """Words beside a cell, where there is room for them; whether there is."""
         mark = WordBox(column, row, column + 1, row + 1)
-        found = self.room.beside(mark, columns_of(text) + 2, 1.0, below=below)  # with a blank at both sides
+        found = self.room.beside(mark, columns_of(text) + 2, 1.0)  # with a blank at both sides
         if found is not None:
             self._put(text, int(found.left) + 1, int(found.top), number)
         return found is not None
@@ -268,7 +268,7 @@ def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
         else:
             row = round(canvas.y(item.y)) // canvas.per_y
             number = NOBODY if item.pen is None else item.pen
-            has_room = canvas.beside(shown(item.text), column, row, number, below=item.below)
+            has_room = canvas.beside(shown(item.text), column, row, number)
         if not has_room:
             told.append(item.note or item.text)
     return told
@@ -373,7 +373,7 @@ def _spot(item: Spot, canvas: Canvas) -> None:
     canvas.write(_mark(item.shape, canvas.look, number), column, row, number)
 
 
-def _words(item: Words, canvas: Canvas) -> None:
+def _word(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
     canvas.write(shown(item.text), column - columns_of(shown(item.text)) // 2, row)
 
@@ -425,6 +425,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _word,
     Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

@@ -82,19 +82,18 @@ class Field:
             self.take(found)
         return found
 
-    def beside(self, mark: WordBox, width: float, height: float, *, below: bool = False) -> WordBox | None:
-        """Room for words of a size beside a mark; below: rather there than above it."""
-        return self.best(self._around(mark, width, height, below))
+    def beside(self, mark: WordBox, width: float, height: float) -> WordBox | None:
+        """Room for words of a size beside a mark."""
+        return self.best(self._around(mark, width, height))
 
-    def _around(self, mark: WordBox, width: float, height: float, below: bool) -> Iterator[tuple[float, WordBox]]:
+    def _around(self, mark: WordBox, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
         """Boxes about a mark with what each costs: above, below, at its right and left, then farther and farther."""
         middle = 0.5 * (mark.top + mark.bottom - height)
         centred = 0.5 * (mark.left + mark.right - width)
         centred = max(min(centred, self.box.right - width), self.box.left)
         for line in range(LINES):
             own = PER_LINE * line
-            tops = (mark.top - height * (line + 1), mark.bottom + height * line)
-            for top in tops[::-1] if below else tops:
+            for top in (mark.top - height * (line + 1), mark.bottom + height * line):
                 for left in (mark.right, mark.left - width, centred):
                     yield own, WordBox(left, top, left + width, top + height)
             if not line:

@@ -37,11 +37,9 @@ def words(items: Sequence[Item], box: Box, drawn: Sequence[Shape], room: WordBox
 
 
 def in_turn(items: Sequence[Item]) -> list[Spot | Upright]:
-    """What has words, in the order in which these look for room: numbers at marks first."""
-    return [
-        item for kind in (Spot, Upright) for item in items
-        if isinstance(item, kind) and item.text and not (isinstance(item, Upright) and item.above)
-    ]  # fmt: skip
+    """What has words in the panel, in the order in which these look for room: numbers at marks first."""
+    spots = [item for item in items if isinstance(item, Spot) and item.text]
+    return [*spots, *(item for item in items if isinstance(item, Upright) and item.text and not item.above)]
 
 
 def wide(text: str, size: float) -> float:
@@ -79,7 +77,7 @@ def _spot(item: Spot, box: Box, field: Field) -> Text | None:
     """The words beside a mark."""
     text = shown(item.text)
     mark = Mark(box.x(item.x), box.y(item.y), item.shape, BLACK, item.filled, SPOT + NEAR)
-    found = field.beside(_about(mark), wide(text, SMALL), HIGH * SMALL, below=item.below)
+    found = field.beside(_about(mark), wide(text, SMALL), HIGH * SMALL)
     if found is None:
         return None
     colour = BLACK if item.pen is None else pen(item.pen).colour

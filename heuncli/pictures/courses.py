@@ -90,3 +90,8 @@ def values_at(study: Study, path: str, times: Array) -> Array:
     if study.numbers(path).of_vectors:
         return np.asarray(np.sqrt(np.einsum("nk,nk->n", values, values)))
     return values.reshape(len(times))
+
+
+def vectors_at(study: Study, path: str, times: Array) -> Array:
+    """The vectors at a path at some instants of the run, (n, 3)."""
+    return curves.values_at(study, path, times)

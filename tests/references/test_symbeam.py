@@ -1,4 +1,4 @@
-"""Examples of symbeam (github.com/amcc1996/symbeam, examples/README.md): beams, their reactions, V(x) and M(x).
+"""Examples of symbeam (in the readme of its examples, github.com/amcc1996/symbeam): beams with V(x) and M(x).
 
 Published as expressions, whose values are exact; its V has the sign of heun's Q1, its M that of M2, its couples turn
 about z. The beams between two hinges are bodies of their own. Its distributed loads that are linear are posed as such;
@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.pictures.bars import Bar
+from heuncli.pictures.bars import WholeBar
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.diagrams import diagrams
 from heuncli.report.table_units import Units
@@ -229,7 +229,7 @@ def test_shear_and_moment_all_along(number: int) -> None:
     """Anywhere along each beam, on both sides of what acts there."""
     beam = BEAMS[number]
     for name, a, b in bodies_of(beam):
-        own = Bar(solved_beam(number), name).at(0.0)
+        own = WholeBar(solved_beam(number), name).at(0.0)
         size = {"Q1": 40.0, "M2": 100.0}
         for span in beam.spans:
             inside = (own["Q1"].s + a > span.low + 1e-9) & (own["Q1"].s + a < span.high - 1e-9)

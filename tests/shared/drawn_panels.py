@@ -16,7 +16,7 @@ from heuncli.drawing.picture import svg
 from heuncli.results import Array
 
 SPACE = "{http://www.w3.org/2000/svg}"
-BLACK, TICK = "#000000", "middle"
+TICK = "middle"
 
 
 class DrawnPanel(NamedTuple):
@@ -30,7 +30,6 @@ class DrawnPanel(NamedTuple):
     areas: dict[str, Array]
     marks: Array
     words: list[tuple[float, float, str]]
-    strokes: Array
     pixel: float
     across: float
 
@@ -50,7 +49,7 @@ def panels(figure: Figure) -> list[DrawnPanel]:
 
 
 def read(text: str) -> list[DrawnPanel]:
-    """The panels of an SVG: fields with a black frame, axes by the numbers beside their ticks."""
+    """The panels of an SVG: fields in a frame, axes by the numbers beside their ticks."""
     shapes = list(ElementTree.fromstring(text))
     frames = [points(s) for s in shapes if s.tag == f"{SPACE}polyline" and is_frame(s)]
     across = scale([(float(s.get("x", 0)), s.text or "") for s in shapes if is_tick_across(s, frames)])
@@ -70,7 +69,6 @@ def panel(shapes: Sequence[ElementTree.Element], frame: Array, across: tuple[flo
 
     curves: dict[str, list[Array]] = {}
     areas: dict[str, Array] = {}
-    strokes = []
     for shape in shapes:
         name = shape.findtext(f"{SPACE}title") or ""
         if shape.tag not in (f"{SPACE}polyline", f"{SPACE}polygon"):
@@ -82,14 +80,10 @@ def panel(shapes: Sequence[ElementTree.Element], frame: Array, across: tuple[flo
             areas[name] = turned(at)
         elif name:
             curves.setdefault(name, []).append(turned(at))
-        elif len(at) == 2 and shape.get("stroke") not in (BLACK, "#e2e2e2", "#444444", "#888888", "#c4c4c4"):
-            strokes.append(turned(at))
     circles = [s for s in shapes if s.tag == f"{SPACE}circle" and top <= float(s.get("cy", 0)) <= bottom]
     marks = np.array([[float(s.get("cx", 0)), float(s.get("cy", 0))] for s in circles]).reshape(-1, 2)
     inside = [(x, y, text) for x, y, text, _ in texts if left <= x <= right and top <= y <= bottom]
-    return DrawnPanel(
-        label, curves, areas, turned(marks), inside, np.array(strokes).reshape(-1, 2, 2), abs(up[1]), abs(across[1])
-    )
+    return DrawnPanel(label, curves, areas, turned(marks), inside, abs(up[1]), abs(across[1]))
 
 
 def points(shape: ElementTree.Element) -> Array:
@@ -98,9 +92,9 @@ def points(shape: ElementTree.Element) -> Array:
 
 
 def is_frame(shape: ElementTree.Element) -> bool:
-    """Whether a line is the frame of a panel: black, closed, of right angles."""
+    """Whether a line is the frame of a panel: a closed rectangle without a name."""
     at = points(shape)
-    return shape.get("stroke") == BLACK and len(at) == 5 and bool((at[0] == at[-1]).all()) and not len(shape)
+    return len(at) == 5 and bool((at[0] == at[-1]).all()) and not len(shape)
 
 
 def is_tick_across(shape: ElementTree.Element, frames: Sequence[Array]) -> bool:
@@ -130,6 +124,14 @@ def is_number(text: str) -> bool:
 def heights(curve: Array, s: Array) -> Array:
     """The height of a curve over places (n,), between the points that are drawn; not for places at which it jumps."""
     return np.interp(s, curve[:, 0], curve[:, 1])
+
+
+def edges(area: Array, s: Array) -> tuple[Array, Array]:
+    """The lower and the upper edge of a band (n, 2), drawn there and back, over places."""
+    turn = int(np.argmax(area[:, 0]))
+    beyond = turn + 1 + int(np.argmax(area[turn + 1 :, 0] >= area[turn, 0]))
+    turn = beyond if area[beyond, 0] >= area[turn, 0] else turn + 1
+    return heights(area[:turn], s), heights(area[turn:][::-1], s)
 
 
 def upright_at(curve: Array, s: float, near: float) -> list[tuple[float, float]]:

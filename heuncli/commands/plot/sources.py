@@ -6,9 +6,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from heuncli.cli import alarm, measure
+from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
+from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
+from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.pictures.courses import Pictured
 from heuncli.records import replace
@@ -58,6 +61,13 @@ def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Sp
         for case in request.case.split(","):
             yield f"{name} {case}".lstrip(), load(file, overrides=given, checking=False, case=case)
     require_other_file(request.output, [file])
+
+
+def require_no_paths(asked: PlotAsked) -> None:
+    """Raise UsageError where a picture of the whole scene is asked for of some paths."""
+    if asked.paths:
+        message = f"heun plot {asked.what} {' '.join(asked.paths)}: {asked.what} is of the whole scene"
+        raise UsageError(Problem("bad-option", message, hint=f"heun plot {asked.files[0]} {asked.what}"))
 
 
 def solution(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:

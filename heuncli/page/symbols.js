@@ -1,0 +1,191 @@
+/** @file The field's symbols: joints, the ground, springs, ropes; the axes of the world and gravity in the corner. */
+
+import { points, stands } from "./poses.js";
+import { arrow, polyline, ring, shape, words } from "./strokes.js";
+import { cross, lengthOf, unit } from "./vectors.js";
+
+const R = 5.5; // pixels: radius of a joint
+const STAND = 15; // pixels: from a joint to the ground that holds it
+const HALF = 12; // pixels: half of the line of ground under a joint
+const GUIDE = 0.11; // of the scene: half of a guide's rails
+const COILS = 7;
+const CORNER = 30; // pixels: length of the axes of the world
+
+/** A direction on the screen of unit length; one that looks at the viewer has none. */
+function onScreen(view, v) {
+  const [x, y] = view.direct(unit(v));
+  const size = Math.hypot(x, y);
+  return size > 0.15 * view.scale ? [x / size, y / size] : null;
+}
+
+/** Places about one on the screen: so many pixels along a direction, and so many to its right as one looks along it. */
+function placer([x, y], [ux, uy]) {
+  return (along, aside = 0) => [x + along * ux - aside * uy, y + along * uy + aside * ux];
+}
+
+/** Ground: a line through a place with strokes beyond it; n: away from what stands on it. */
+function hatched(pen, at, n, half, colours) {
+  const place = placer(at, n);
+  polyline(pen, [place(0, -half), place(0, half)], colours.ink, 1.6);
+  for (let t = -half + 3; t <= half; t += 5) polyline(pen, [place(0, t), place(5, t - 3.5)], colours.ink, 1);
+}
+
+/** Legs from a joint to the ground that holds it. */
+function standing(pen, view, at, colours) {
+  const down = view.up.map((component) => -component);
+  const n = onScreen(view, down) ?? [0, 1];
+  const place = placer(at, n);
+  shape(pen, [at, place(STAND, -8), place(STAND, 8)], colours.paper, colours.ink, 1.4);
+  hatched(pen, place(STAND), n, HALF, colours);
+}
+
+/** What a joint that holds a point is drawn as, by its kind, at a place; along: its axis on the screen, if seen. */
+const AT_POINT = {
+  ball: (pen, [x, y], along, colours) => {
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    ring(pen, x, y, R - 2.8, colours.ink, colours.ink, 1);
+  },
+  pin: (pen, [x, y], along, colours) => {
+    const place = along && placer([x, y], along);
+    if (place) polyline(pen, [place(-2 * R), place(2 * R)], colours.ink, 2);
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    ring(pen, x, y, 1.2, colours.ink, colours.ink, 1);
+  },
+  universal: (pen, [x, y], along, colours) => {
+    const place = placer([x, y], along ?? [1, 0]);
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    polyline(pen, [place(-R), place(R)], colours.ink, 1.5);
+    polyline(pen, [place(0, -R), place(0, R)], colours.ink, 1.5);
+  },
+  weld: (pen, at, along, colours) => {
+    const place = placer(at, [1, 0]);
+    shape(pen, [place(-5, -5), place(5, -5), place(5, 5), place(-5, 5)], colours.ink, colours.paper, 1);
+  },
+};
+
+/** Rails along a world direction beside a place, the first of them hatched where it is the ground. */
+function rails(pen, view, at, along, grounded, colours, sides) {
+  const u = onScreen(view, along);
+  if (!u) return;
+  const n = u[0] >= 0 ? u : [-u[0], -u[1]]; // so that the ground is below
+  const place = placer(at, n);
+  const half = Math.max(16, Math.min(60, GUIDE * view.radius * view.scale));
+  sides.forEach((side, k) => {
+    polyline(pen, [place(-half, side), place(half, side)], colours.ink, 1.5);
+    if (grounded && k === 0) hatched(pen, place(0, side), [-n[1], n[0]], half, colours);
+  });
+}
+
+/** A block between rails. */
+function block(pen, view, at, axis, grounded, colours) {
+  const place = placer(at, onScreen(view, axis) ?? [1, 0]);
+  rails(pen, view, at, axis, grounded, colours, [9, -9]);
+  shape(pen, [place(-10, -6), place(10, -6), place(10, 6), place(-10, 6)], colours.paper, colours.ink, 1.8);
+}
+
+/** A roller on rails. */
+function roller(pen, view, at, along, grounded, colours, sides) {
+  if (lengthOf(along) > 0.1) rails(pen, view, at, along, grounded, colours, sides);
+  ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8);
+  ring(pen, at[0], at[1], 1.2, colours.ink, colours.ink, 1);
+}
+
+/** What a joint that leaves a point free to slide is drawn as, by its kind. */
+const SLIDING = {
+  slide: block,
+  cylinder: (pen, view, at, axis, grounded, colours) => {
+    block(pen, view, at, axis, grounded, colours);
+    ring(pen, at[0], at[1], 3, colours.paper, colours.ink, 1.4);
+  },
+  line: (pen, view, at, axis, grounded, colours) => {
+    roller(pen, view, at, axis, grounded, colours, [R + 2, -R - 2]);
+  },
+  plane: (pen, view, at, normal, grounded, colours) => {
+    roller(pen, view, at, cross(normal, view.toward), grounded, colours, [R + 2]);
+  },
+};
+
+/** A bar or rope between two points. */
+function drawRod(pen, joint, from, at, colours) {
+  polyline(pen, [from, at], colours.ink, 2, joint.rope ? [8, 3] : []);
+  for (const [[x, y], other, body] of [
+    [from, at, joint.a],
+    [at, from, joint.b],
+  ]) {
+    const size = Math.hypot(x - other[0], y - other[1]) || 1;
+    const away = [(x - other[0]) / size, (y - other[1]) / size];
+    ring(pen, x, y, 3.5, colours.paper, colours.ink);
+    if (body < 0) hatched(pen, placer([x, y], away)(5), away, HALF, colours);
+  }
+}
+
+/** A joint. */
+export function drawJoint(pen, view, poses, joint, colours) {
+  const from = view.project(stands(poses, joint.a, joint.p)).slice(0, 2);
+  const at = view.project(stands(poses, joint.b, joint.q)).slice(0, 2);
+  const axis = points(poses, joint.a, joint.axis);
+  const grounded = joint.a < 0 || joint.b < 0;
+  if (joint.kind in AT_POINT) {
+    if (grounded) standing(pen, view, at, colours);
+    AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);
+  } else if (joint.kind in SLIDING) {
+    polyline(pen, [from, at], colours.faint, 1, [5, 4]);
+    SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
+  } else {
+    drawRod(pen, joint, from, at, colours);
+  }
+}
+
+/** A spring as a zigzag, an actuator as a cylinder with its rod. */
+export function drawLine(pen, view, poses, line, colours) {
+  const a = view.project(stands(poses, line.a, line.p));
+  const b = view.project(stands(poses, line.b, line.q));
+  const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+  const place = placer(a, [(b[0] - a[0]) / long, (b[1] - a[1]) / long]);
+  const at = (share, aside = 0) => place(share * long, aside);
+  if (line.kind === "spring") {
+    const turns = [];
+    for (let k = 0; k < 2 * COILS; k += 1) turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), k % 2 ? 6 : -6));
+    polyline(pen, [at(0), at(0.15), ...turns, at(0.85), at(1)], colours.ink, 1.5);
+  } else {
+    polyline(pen, [at(0), at(1)], colours.ink, 1.8);
+    shape(pen, [at(0.12, 5), at(0.58, 5), at(0.58, -5), at(0.12, -5)], colours.paper, colours.ink, 1.5);
+    polyline(pen, [at(0.45, 5), at(0.45, -5)], colours.ink, 1.5);
+  }
+  for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
+}
+
+/** The axes of the world, and gravity beside them. */
+export function drawCorner(pen, view, gravity, colours) {
+  const [x, y] = [44, view.height - 44];
+  const told = (direction) => view.direct(direction).map((component) => (CORNER * component) / view.scale);
+  ["x", "y", "z"].forEach((name, k) => {
+    const [dx, dy] = told([0, 1, 2].map((i) => Number(i === k)));
+    polyline(
+      pen,
+      [
+        [x, y],
+        [x + dx, y + dy],
+      ],
+      colours.ink,
+      1.6,
+    );
+    const size = Math.hypot(dx, dy);
+    if (size < 6) return;
+    const [nx, ny] = placer([x, y], [dx / size, dy / size])(size + 9);
+    words(pen, name, nx, ny, colours.ink, colours.panel, "center");
+  });
+  if (lengthOf(gravity) > 0) {
+    const [dx, dy, near] = told(unit(gravity));
+    const from = [x + 62, y - 16];
+    arrow(pen, from, [from[0] + dx, from[1] + dy], near * view.scale, colours.faint, colours.panel);
+    words(pen, "g", from[0] + 10, from[1] + 6, colours.faint, colours.panel);
+  }
+}
+
+/** A point of the ground. */
+export function drawGroundPoint(pen, view, at, colours) {
+  const place = placer(view.project(at), [1, 0]);
+  polyline(pen, [place(-4), place(4)], colours.faint, 1.2);
+  polyline(pen, [place(0, -4), place(0, 4)], colours.faint, 1.2);
+}
