@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -16,17 +16,22 @@ from heuncli.drawing.figure import (
     Cells,
     Figure,
     Item,
+    Label,
+    Link,
     Panel,
     Polygon,
     Scaling,
     Spot,
     Strokes,
+    Symbol,
     Trace,
     Upright,
 )
-from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, pen
+from heuncli.drawing.labels import NOT_NAMED, Wanted, beside
+from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, WHITE, mixed, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
 from heuncli.drawing.shades import shade
+from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
@@ -43,6 +48,9 @@ PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # pixels at least
 HEAD = 8.0  # the head of an arrow
 HATCH = 9.0  # between the lines of a hatch
 NEAR = 4.0  # from a mark to its words
+TINT, SOLID = 0.14, 0.65  # of a colour in what is filled with it; how much of what is solid hides what is behind
+ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # what lies on what
+LAYERED = {Area: 0, Line: 0, Mark: 0, Text: 1}
 FINE = 0.1  # pixels: what a point of a curve may lie off the line that is drawn
 
 
@@ -87,14 +95,17 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
     shapes, y = _heading(figure, width)
     shapes += (legend := _legend(figure, y, width))[0]
     y = legend[1]
+    unnamed: list[str] = []
     for panel in figure.panels:
         y += LINE + 4.0 if panel.title else 6.0
         box = _box(panel, y, width)
         if panel.title:
             shapes.append(Text(box.left, y - 6.0, shown(panel.title), NAME, bold=True))
-        shapes += _panel(panel, box)
+        drawn, left_out = _panel(panel, box)
+        shapes += drawn
+        unnamed += left_out
         y = box.bottom + (UNDER if panel.x.label else BETWEEN)
-    for note in figure.notes:
+    for note in [*figure.notes, *([NOT_NAMED.format(", ".join(unnamed))] if unnamed else [])]:
         for text in _wrapped(note, SMALL, width):
             shapes.append(Text(20.0, y + 4.0, text, SMALL, colour=GREY))
             y += LINE
@@ -150,13 +161,19 @@ def _box(panel: Panel, top: float, width: float) -> Box:
     return Box(left, top, right, top + height, panel.x, panel.y)
 
 
-def _panel(panel: Panel, box: Box) -> list[Shape]:
-    """The axes and items of a panel, what is filled first, words last."""
+def _panel(panel: Panel, box: Box) -> tuple[list[Shape], list[str]]:
+    """The axes and items of a panel, what is filled first, words last; and the words for which there is no room."""
     drawn = [shape for item in panel.items for shape in _shapes(item, box)]
-    order = {Area: 0, Line: 1, Mark: 2, Text: 3}
+    order = LAYERED if panel.layered else ORDER
     drawn.sort(key=lambda shape: order[type(shape)])
-    filled = [shape for shape in drawn if isinstance(shape, Area)]
-    return [*filled, *([] if panel.bare else _axes(box)), *drawn[len(filled) :]]
+    filled = 0 if panel.layered else sum(isinstance(shape, Area) for shape in drawn)
+    labels = [
+        Wanted(box.x(item.x), box.y(item.y), shown(item.text), _ink(item.pen), item.spare)
+        for item in panel.items
+        if isinstance(item, Label)
+    ]
+    named, left_out = beside(labels, drawn, (box.left, box.top, box.right, box.bottom), SMALL, LETTER)
+    return [*drawn[:filled], *([] if panel.bare else _axes(box)), *drawn[filled:], *named], left_out
 
 
 def _axes(box: Box) -> Iterator[Shape]:
@@ -211,16 +228,53 @@ def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
         yield Line(((box.x(x0), box.y(y0)), (box.x(x1), box.y(y1))), colour, item.width)
 
 
+def _ink(number: int | None) -> str:
+    """The colour of a pen; None: black."""
+    return BLACK if number is None else pen(number).colour
+
+
 def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
-    colour = BLACK if item.pen is None else pen(item.pen).colour
+    colour = _ink(item.pen)
     corners = tuple(map(tuple, box.points(*item.corners.T).tolist()))
-    if item.filled:
-        yield Area(corners, colour, 0.12, shown(item.name))
-    yield Line((*corners, corners[0]), colour, 1.0, name=shown(item.name))
+    if item.solid:
+        yield Area(corners, mixed(colour, TINT), SOLID, shown(item.name))
+    elif item.filled:
+        yield Area(corners, colour, TINT, shown(item.name))
+    yield Line((*corners, corners[0]), colour, item.width, name=shown(item.name))
+
+
+def _symbol(item: Symbol, box: Box) -> Iterator[Shape]:
+    a, b = box.x(item.along[0]) - box.x(0.0), box.y(item.along[1]) - box.y(0.0)
+    yield from _parts(SYMBOLS[item.symbol].parts, box.x(item.x), box.y(item.y), a, b, _ink(item.pen), item.name)
+
+
+def _link(item: Link, box: Box) -> Iterator[Shape]:
+    x, y = box.x(item.x), box.y(item.y)
+    a, b = box.x(item.to_x) - x, box.y(item.to_y) - y
+    yield from _parts(link(item.kind, math.hypot(a, b)), x, y, a, b, _ink(item.pen), item.name)
+
+
+def _parts(
+    parts: Sequence[Part], x: float, y: float, a: float, b: float, colour: str, name: str = ""
+) -> Iterator[Shape]:
+    """The parts of a symbol about a place, its x along (a, b)."""
+    length = math.hypot(a, b)
+    a, b = (a / length, b / length) if length > 0.0 else (1.0, 0.0)
+    for part in parts:
+        # y to the left of x: on paper y goes down
+        points = tuple((x + p * a + q * b, y + p * b - q * a) for p, q in part.points)
+        if part.fill:
+            yield Area(points, colour if part.fill == "ink" else WHITE, name=shown(name))
+        yield Line((*points, points[0]) if part.closed else points, colour, 1.2, name=shown(name))
+
+
+def _label(item: Label, box: Box) -> Iterator[Shape]:
+    """Placed when all else is (`_panel`)."""
+    yield from ()
 
 
 def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
-    colour = BLACK if item.pen is None else pen(item.pen).colour
+    colour = _ink(item.pen)
     x0, y0 = box.x(item.x), box.y(item.y)
     x1, y1 = box.x(item.x + item.by_x), box.y(item.y + item.by_y)
     length = math.hypot(x1 - x0, y1 - y0)
@@ -240,7 +294,7 @@ def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
 
 def _spot(item: Spot, box: Box) -> Iterator[Shape]:
     x, y = box.x(item.x), box.y(item.y)
-    colour = BLACK if item.pen is None else pen(item.pen).colour
+    colour = _ink(item.pen)
     yield Mark(x, y, item.shape, colour, item.filled, 3.2)
     if item.text:
         text = shown(item.text)
@@ -298,8 +352,8 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Symbol: _symbol,
+    Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 

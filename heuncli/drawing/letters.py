@@ -21,15 +21,20 @@ from heuncli.drawing.figure import (
     Cells,
     Figure,
     Item,
+    Label,
+    Link,
     Panel,
     Polygon,
     Scaling,
     Spot,
     Strokes,
+    Symbol,
     Trace,
     Upright,
 )
+from heuncli.drawing.labels import NOT_NAMED
 from heuncli.drawing.pens import pen
+from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
@@ -41,6 +46,7 @@ DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # by row and co
 ACROSS, DOWN = 2, 4  # dots of a cell
 ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
+DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
 SHADES = " ░▒▓█"
@@ -74,6 +80,7 @@ class Canvas:
         self.dots = np.zeros((rows, columns), dtype=np.int64)
         self.pens = np.full((rows, columns), -1)
         self.words: dict[tuple[int, int], str] = {}
+        self.unwritten: list[str] = []
 
     def x(self, value: float) -> float:
         """The dot of a place along the axis across, from the left."""
@@ -101,12 +108,17 @@ class Canvas:
         for k in range(0, steps + 1, every):
             self.dot(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, number)
 
-    def write(self, text: str, column: int, row: int) -> None:
-        """Words over the dots, moved to the left where they would leave the panel; not over other words."""
+    def write(self, text: str, column: int, row: int) -> bool:
+        """Words over the dots, moved to the left where they would leave the panel; not over other words.
+
+        Returns whether they stand there.
+        """
         begin = max(0, min(column, self.columns - len(text)))
         cells = [(row, begin + k) for k in range(len(text))]
-        if 0 <= row < self.rows and begin + len(text) <= self.columns and not any(cell in self.words for cell in cells):
-            self.words |= dict(zip(cells, text, strict=True))
+        if not (0 <= row < self.rows and begin + len(text) <= self.columns) or any(c in self.words for c in cells):
+            return False
+        self.words |= dict(zip(cells, text, strict=True))
+        return True
 
     def lines(self) -> list[str]:
         """The rows as text."""
@@ -169,7 +181,7 @@ def _panel(panel: Panel, look: Look) -> list[str]:
     heads = wrapped(shown(" ".join(part for part in (panel.title, _upward(panel)) if part)), look.width, 0)
     lines = [*(head for head in heads if head)]
     if panel.bare:
-        return lines + canvas.lines()
+        return lines + canvas.lines() + _key(panel, canvas)
     marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
     for row, text in enumerate(canvas.lines()):
         lines.append(
@@ -177,7 +189,16 @@ def _panel(panel: Panel, look: Look) -> list[str]:
             if look.braille
             else f"{shown(marks.get(row, ''))[:LABEL]:>{LABEL}} |{text}"
         )
-    return lines + _below(panel, canvas)
+    return lines + _below(panel, canvas) + _key(panel, canvas)
+
+
+def _key(panel: Panel, canvas: Canvas) -> list[str]:
+    """What the letters of labels stand for."""
+    labels = [item for item in panel.items if isinstance(item, Label) and item.letter]
+    known = [f"{item.letter} {item.text}" for item in labels if item.letter not in (item.text, *canvas.unwritten)]
+    hidden = [item.text for item in labels if item.letter in canvas.unwritten]
+    told = [", ".join(dict.fromkeys(known)), *([NOT_NAMED.format(", ".join(hidden))] if hidden else [])]
+    return [line for text in told if text for line in wrapped(shown(text), canvas.look.width, 2)]
 
 
 def _upward(panel: Panel) -> str:
@@ -247,6 +268,49 @@ def _spot(item: Spot, canvas: Canvas) -> None:
         canvas.write(text, column + 1 if right else column - len(text), row)
 
 
+def _symbol(item: Symbol, canvas: Canvas) -> None:
+    x, y = canvas.x(item.x), canvas.y(item.y)
+    shown_as = SYMBOLS[item.symbol]
+    letter = shown_as.letter if canvas.look.braille else shown_as.plain
+    if letter:
+        canvas.write(letter, round(x) // canvas.per_x, round(y) // canvas.per_y)
+    elif canvas.look.braille:
+        along = canvas.x(item.along[0]) - canvas.x(0.0), canvas.y(item.along[1]) - canvas.y(0.0)
+        _parts(shown_as.parts, x, y, along, item.pen, canvas)
+
+
+def _link(item: Link, canvas: Canvas) -> None:
+    x, y = canvas.x(item.x), canvas.y(item.y)
+    along = canvas.x(item.to_x) - x, canvas.y(item.to_y) - y
+    if canvas.look.braille:
+        _parts(link(item.kind, DOT * math.hypot(*along)), x, y, along, item.pen, canvas)
+    else:
+        canvas.line(x, y, x + along[0], y + along[1], -1 if item.pen is None else item.pen)
+
+
+def _parts(
+    parts: Sequence[Part], x: float, y: float, along: tuple[float, float], number: int | None, canvas: Canvas
+) -> None:
+    """The parts of a symbol about a dot, its x along a way in dots."""
+    length = math.hypot(*along)
+    a, b = (along[0] / length, along[1] / length) if length > 0.0 else (1.0, 0.0)
+    for part in parts:
+        points = [(x + (p * a + q * b) / DOT, y + (p * b - q * a) / DOT) for p, q in part.points]
+        for (x0, y0), (x1, y1) in pairwise([*points, *points[: part.closed]]):
+            canvas.line(x0, y0, x1, y1, -1 if number is None else number)
+
+
+def _label(item: Label, canvas: Canvas) -> None:
+    text = shown(item.letter)
+    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+    width = len(text)
+    beside = ((1, 0), (-width, 0), (0, -1), (0, 1), (1, -1), (1, 1), (-width, -1), (-width, 1), (2, 0), (-width - 1, 0))
+    for right, down in beside if text else ():
+        if canvas.write(text, column + right, row + down):
+            return
+    canvas.unwritten += [item.letter] if text and not item.spare else []
+
+
 def _upright(item: Upright, canvas: Canvas) -> None:
     x = canvas.x(item.x)
     canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, -1, 2)
@@ -293,6 +357,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Upright: _upright,
-    Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Symbol: _symbol,
+    Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

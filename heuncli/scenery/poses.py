@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND
@@ -31,3 +32,10 @@ def poses_of(study: Study, times: Array) -> Poses:
     found = study.results if study.of_one_instant else study.reports_at(times, MOTION)
     places = {name: body["position"] for name, body in found.bodies.items()}
     return Poses(found.time, places, {name: body["rotation"] for name, body in found.bodies.items()})
+
+
+def poses_at_start(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
+    """The poses in which a scene is assembled."""
+    own = enumerate(body.name for body in mechanism.bodies)
+    places = {name: start.position[None, i] for i, name in own}
+    return Poses(np.array([t]), places, {name: start.rotation[None, i] for i, name in enumerate(places)})

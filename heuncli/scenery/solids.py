@@ -41,6 +41,48 @@ def surfaces_of(shape: Shape) -> tuple[Surface, ...]:
     return (_revolved(start, end, first, last, shape.inner_radius or 0.0),)
 
 
+def reached(shape: Shape, point: Array) -> tuple[Array, float]:
+    """The place of a shape that leads to a point, and how far outside the shape the point lies; 0: it does not.
+
+    That is on its axis, of a box on its surface, of a sphere and a point mass its centre.
+    """
+    if shape.type == "point":
+        place = _vector(shape.at)
+        return place, float(np.linalg.norm(point - place))
+    if shape.type == "box":
+        axes = np.eye(3) if shape.rotation is None else np.array(shape.rotation, dtype=np.float64)
+        half = 0.5 * _vector(shape.size)
+        place = _vector(shape.center) + axes @ np.clip(axes.T @ (point - _vector(shape.center)), -half, half)
+        return place, float(np.linalg.norm(point - place))
+    if shape.type == "sphere":
+        place = _vector(shape.center)
+        return place, max(0.0, float(np.linalg.norm(point - place)) - (shape.radius or 0.0))
+    start, end = _vector(shape.from_), _vector(shape.to)
+    way = end - start
+    share = float((point - start) @ way / (way @ way))
+    place = start + min(max(share, 0.0), 1.0) * way
+    beside = float(np.linalg.norm(point - start - share * way))
+    beyond = max(share - 1.0, -share, 0.0) * float(np.linalg.norm(way))
+    first = shape.radius or 0.0
+    last = first if shape.to_radius is None else shape.to_radius
+    return place, max(beyond, beside - max(first, last))
+
+
+def ellipsoid(mass: float, center: Array, inertia: Array) -> Surface:
+    """The even ellipsoid of a mass with that inertia (3, 3) about its centre; flat where there is no such.
+
+    a1^2 = 5/(2 m) (A2 + A3 - A1)    of the principal moments A
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    squares = np.maximum(2.5 / mass * (moments.sum() - 2.0 * moments), 0.0)
+    if np.linalg.det(axes) < 0.0:
+        axes = axes * np.array([1.0, 1.0, -1.0])
+    whole = np.sqrt(squares) * axes  # columns are the half axes
+    unit = _sphere(np.zeros(3), 1.0)
+    edges = tuple(center + edge @ whole.T for edge in unit.edges)
+    return Surface(center + unit.corners @ whole.T, unit.faces, edges)
+
+
 def _vector(vector: Vec | None) -> Array:
     return np.array(vector, dtype=np.float64)
 

@@ -21,13 +21,18 @@ from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
 
 
-def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
-    """The runs, in the order of the files and of their cases; what they are warned of is told."""
+def solved(
+    files: Sequence[str], paths: Sequence[str], request: PlotRequest, blocks: Sequence[str] = ()
+) -> list[Pictured]:
+    """The runs, in the order of the files and of their cases; what they are warned of is told.
+
+    blocks: of the results, that are needed altogether beside what the paths need.
+    """
     specs = [pair for file in files for pair in _specs(file, request)]
     asked = [MeasureRequest("", path) for path in paths]
     for _, spec in specs:
         measure.check(asked, spec, "heun plot")
-    return [_solved(name if len(specs) > 1 else "", spec, paths, request) for name, spec in specs]
+    return [_solved(name if len(specs) > 1 else "", spec, [*paths, *blocks], request) for name, spec in specs]
 
 
 def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:

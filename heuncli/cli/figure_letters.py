@@ -14,12 +14,17 @@ WIDTH = 100  # columns where there is no terminal
 LEAST, MOST = 40, 400
 
 
-def in_letters(figure: Figure, width: int | None) -> str:
-    """The figure as text. Raises UsageError."""
+def require_width(width: int | None) -> None:
+    """Say that there are no drawings of that many columns. Raises UsageError."""
     if width is not None and not LEAST <= width <= MOST:
         message = f"--width {width}: expected {LEAST} to {MOST} columns"
         raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
-    present = terminal.present()
+
+
+def in_letters(figure: Figure, width: int | None, output: str | None = None) -> str:
+    """The figure as text, for the terminal or for a file. Raises UsageError."""
+    require_width(width)
+    present = output is None and terminal.present()
     columns = width or (terminal.width() - 1 if present else WIDTH)
     encoding = sys.stdout.encoding if present else None
     return drawn(figure, look_of(columns, encoding, colours=present and terminal.styled()))
