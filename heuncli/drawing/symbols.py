@@ -23,7 +23,7 @@ class Part(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """A symbol: its parts, the first beneath the others; and its letter, where there is braille and where there is none."""
+    """A symbol: its parts, the first beneath the others; and its letter, with and without braille."""
 
     parts: tuple[Part, ...]
     letter: str = ""

@@ -265,9 +265,13 @@ def marks(stood: Stood, k: int) -> Iterator[Symbol]:
         pen, centre = stood.pens[body.name], stood.centers[body.name]
         masses = stood.masses[body.name]
         for place in masses:
-            yield Symbol(*on_paper(stood.seen(body.name, place, k)), "mass", (1.0, 0.0), pen, f"{body.name}: point mass")
+            yield Symbol(
+                *on_paper(stood.seen(body.name, place, k)), "mass", (1.0, 0.0), pen, f"{body.name}: point mass"
+            )
         if few and not any(np.allclose(place, centre, rtol=0.0, atol=1e-12) for place in masses):
-            yield Symbol(*on_paper(stood.seen(body.name, centre, k)), "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass")
+            yield Symbol(
+                *on_paper(stood.seen(body.name, centre, k)), "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass"
+            )
 
 
 def names(stood: Stood, k: int) -> Iterator[Label]:

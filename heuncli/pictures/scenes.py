@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Arrow, Figure, Item, Label, Panel, Scaling, Trace
+from heuncli.drawing.figure import Arrow, Figure, Item, Label, Panel, Scaling
 from heuncli.drawing.ticks import short
 from heuncli.mechanism.model import Mechanism
 from heuncli.pictures import machine_items, traces

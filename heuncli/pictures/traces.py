@@ -62,7 +62,8 @@ def seen(stood: Stood, one: Traced) -> Array:
 def curves(stood: Stood, ways: Sequence[Traced]) -> Iterator[Trace]:
     """The curves."""
     for one in ways:
-        yield Trace(one.name, *seen(stood, one).T, stood.pens[one.body], thin=True)
+        x, y = seen(stood, one).T
+        yield Trace(one.name, x, y, stood.pens[one.body], thin=True)
 
 
 def names(stood: Stood, ways: Sequence[Traced]) -> Iterator[Label]:

@@ -1,4 +1,4 @@
-"""What of a plane a picture of a machine shows: all of it, or the part about the joints if something reaches far beyond.
+"""What of a plane a picture of a machine shows: all of it, or, if something reaches far, the joints' part.
 
 Outlines and lines that leave the window are cut at its sides (Sutherland and Hodgman, 1974; Liang and Barsky, 1984).
 """

@@ -11,6 +11,7 @@ from heuncli.results import Array
 from heuncli.scenery.solids import Surface
 from heuncli.scenery.views import View
 
+Indices = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 KNOWN = 9  # decimals, of a surface's size, to which its edges are found among its corners
 NO_FACE = -1
 
@@ -24,7 +25,7 @@ class Solid(NamedTuple):
     surface: Surface
     normals: Array
     pieces: Array
-    beside: Array
+    beside: Indices
 
 
 def solid_of(surface: Surface) -> Solid:
