@@ -51,6 +51,7 @@ NEAR = 4.0  # from a mark to its words
 TINT, SOLID = 0.14, 0.65  # of a colour in what is filled with it; how much of what is solid hides what is behind
 ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # what lies on what
 LAYERED = {Area: 0, Line: 0, Mark: 0, Text: 1}
+MANY = 8  # corners of an outline, of which those are left out that do not show
 FINE = 0.1  # pixels: what a point of a curve may lie off the line that is drawn
 
 
@@ -224,8 +225,13 @@ def _band(item: Band, box: Box) -> Iterator[Shape]:
 
 def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
     colour = GREY if item.pen is None else pen(item.pen).colour
-    for (x0, y0), (x1, y1) in item.ends.tolist():
-        yield Line(((box.x(x0), box.y(y0)), (box.x(x1), box.y(y1))), colour, item.width)
+    first, last = (box.points(*item.ends[:, k].T) for k in (0, 1))
+    follows = (first[1:] == last[:-1]).all(axis=1)  # where the one before ends
+    for run in np.split(np.arange(len(first)), np.flatnonzero(~follows) + 1):
+        if len(run):
+            points = np.concatenate([first[run], last[run[-1:]]])
+            points = thinned(points) if len(points) > MANY else points
+            yield Line(tuple(map(tuple, points.tolist())), colour, item.width)
 
 
 def _ink(number: int | None) -> str:
@@ -235,7 +241,8 @@ def _ink(number: int | None) -> str:
 
 def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
     colour = _ink(item.pen)
-    corners = tuple(map(tuple, box.points(*item.corners.T).tolist()))
+    around = box.points(*item.corners.T)
+    corners = tuple(map(tuple, thinned(around).tolist())) if len(around) > MANY else tuple(map(tuple, around.tolist()))
     if item.solid:
         yield Area(corners, mixed(colour, TINT), SOLID, shown(item.name))
     elif item.filled:
@@ -258,14 +265,16 @@ def _parts(
     parts: Sequence[Part], x: float, y: float, a: float, b: float, colour: str, name: str = ""
 ) -> Iterator[Shape]:
     """The parts of a symbol about a place, its x along (a, b)."""
-    length = math.hypot(a, b)
+    length, name = math.hypot(a, b), shown(name)
     a, b = (a / length, b / length) if length > 0.0 else (1.0, 0.0)
     for part in parts:
         # y to the left of x: on paper y goes down
         points = tuple((x + p * a + q * b, y + p * b - q * a) for p, q in part.points)
         if part.fill:
-            yield Area(points, colour if part.fill == "ink" else WHITE, name=shown(name))
-        yield Line((*points, points[0]) if part.closed else points, colour, 1.2, name=shown(name))
+            yield Area(points, colour if part.fill == "ink" else WHITE)
+        if part.fill != "ink":
+            yield Line((*points, points[0]) if part.closed else points, colour, 1.2, name=name)
+            name = ""  # told once
 
 
 def _label(item: Label, box: Box) -> Iterator[Shape]:

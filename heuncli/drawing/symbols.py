@@ -76,6 +76,7 @@ SYMBOLS: Mapping[str, Shown] = {
     "ball": Shown((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
     "cross": Shown((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
     "square": Shown((box(4.0, 4.0, "ink"),), "■", "#"),
+    "dot": Shown((ring(1.6, "paper"),), "•", "o"),
     "slider": Shown((box(9.0, 4.5, "paper"),), "□", "="),
     # along what it lets slide: a guide from its side and from its end, a plane from its side and from above
     "guide": Shown((line((-16.0, 7.0), (16.0, 7.0)), line((-16.0, -7.0), (16.0, -7.0)))),

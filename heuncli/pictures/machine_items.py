@@ -170,6 +170,8 @@ def joint(stood: Stood, look: JointLook, k: int, *, thin: bool = False) -> list[
         return _rod(stood, look, k, thin)
     if thin:
         return []
+    if not stood.are_named and GROUND not in (look.a, look.b):
+        return [Symbol(x, y, "dot")]
     axis = stood.seen_along(look.a, look.axis / np.linalg.norm(look.axis), k)
     aside = int(float(np.hypot(*axis)) > ALONG)
     along = (float(axis[0]), float(axis[1])) if aside else (1.0, 0.0)

@@ -22,6 +22,7 @@ from heuncli.report.table_units import Units
 from heuncli.results import Array
 from heuncli.scenery.machine import Machine, machine_of
 from heuncli.scenery.poses import Poses, poses_at_start, poses_of
+from heuncli.scenery.solids import ROUND
 from heuncli.scenery.views import usual, view_of
 from heuncli.spec.models import Damper, Friction, Spec, Torque, TurnSpring
 from heuncli.study.model.setup import draw
@@ -31,6 +32,7 @@ HEIGHT = 520.0  # pixels of a picture, at most
 STRIP = 0.13  # of the larger side, below what is drawn: for the key of arrows, axes and gravity
 CORNER = 0.05  # of the larger side: the arrows of axes and gravity
 IN_JOINTS = (Damper, Friction, Torque, TurnSpring)
+SMOOTH, MANY = 60, 40  # faces about an axis, and of up to how many bodies
 LATER = 7  # the pen of what names later instants
 
 
@@ -66,11 +68,16 @@ def as_assembled(spec: Spec, view: str | None = None) -> Figure:
 
 def standing(scene: PreparedScene, spec: Spec, poses: Poses, view: str | None, units: Units) -> Stood:
     """A machine in some poses as it is seen. Raises Finding."""
-    machine, centers = machine_of(spec), centers_of(scene.mechanism)
+    machine, centers = machine_of(spec, faces(spec)), centers_of(scene.mechanism)
     seen = view_of(view, scene.mechanism.gravity) if view is not None else None
     if seen is None:
         seen = usual(scene, _extent(machine, centers, poses))
     return Stood(spec, machine, centers, poses, seen, units.of("m")[1])
+
+
+def faces(spec: Spec) -> int:
+    """How many of what is round: enough for a smooth outline, fewer of very many bodies."""
+    return SMOOTH if len(spec.bodies) <= MANY else ROUND
 
 
 def centers_of(mechanism: Mechanism) -> Mapping[str, Array]:

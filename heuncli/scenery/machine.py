@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
-from heuncli.scenery.solids import Surface, ellipsoid, reached, surfaces_of
+from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
 from heuncli.spec.models import Actuator, Shape, Spec, Spring
 
 GROUND = "ground"
@@ -63,8 +63,8 @@ class Machine(NamedTuple):
     grounded: Mapping[str, Array]
 
 
-def machine_of(spec: Spec) -> Machine:
-    """What there is to be seen of a loaded spec."""
+def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
+    """What there is to be seen of a loaded spec; faces: of what is round, about its axis."""
     joints = tuple(
         JointLook(name, j.kind, j.a, np.array(j.p), j.b, np.array(j.q), np.array(j.axis))
         for name, j in spec.joints.items()
@@ -74,12 +74,14 @@ def machine_of(spec: Spec) -> Machine:
         for name, f in spec.forces.items()
         if isinstance(f, Spring | Actuator)
     )
-    bodies = tuple(_body(name, spec, joints, lines) for name in spec.bodies)
+    bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
     return Machine(spec.title, bodies, joints, lines, grounded)
 
 
-def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...]) -> BodyLook:
+def _body(
+    name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int
+) -> BodyLook:
     """What a body looks like."""
     body = spec.bodies[name]
     points = {key: np.array(point, dtype=np.float64) for key, point in body.points.items()}
@@ -87,7 +89,7 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
     ends += points.values()
     shapes = body.shapes or ()
-    surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape))
+    surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
         return BodyLook(name, points, surfaces, tuple(_arms(shapes, ends)))
@@ -97,7 +99,7 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
     if float(np.ptp(line, axis=0).max()) < SMALL * gyration:
-        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments),), ())
+        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), ())
     return BodyLook(name, points, (), (line,))
 
 

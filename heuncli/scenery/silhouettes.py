@@ -31,7 +31,8 @@ class Solid(NamedTuple):
 def solid_of(surface: Surface) -> Solid:
     """What of a surface is looked up for each view of it."""
     c = surface.corners
-    normals = np.array([np.cross(c[f[1]] - c[f[0]], c[f[2]] - c[f[1]]) for f in surface.faces])
+    p, q, r = c[np.array([face[:3] for face in surface.faces])].swapaxes(0, 1)
+    normals = np.cross(q - p, r - q)
     size = float(np.ptp(c, axis=0).max()) or 1.0
     numbers = {tuple(p): k for k, p in enumerate(np.round(c / size, KNOWN).tolist())}
     sides: dict[tuple[int, int], list[int]] = {}

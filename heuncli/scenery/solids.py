@@ -24,21 +24,21 @@ class Surface(NamedTuple):
     edges: tuple[Array, ...]
 
 
-def surfaces_of(shape: Shape) -> tuple[Surface, ...]:
-    """The surfaces of a shape; a point mass has none."""
+def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
+    """The surfaces of a shape, a round one with so many faces about its axis; a point mass has none."""
     if shape.type == "point":
         return ()
     if shape.type == "box":
         return (_box(shape),)
     if shape.type == "sphere":
-        return (_sphere(_vector(shape.center), shape.radius or 0.0),)
+        return (_sphere(_vector(shape.center), shape.radius or 0.0, faces),)
     start, end = _vector(shape.from_), _vector(shape.to)
     if shape.type == "rod":
         radius = THIN * float(np.linalg.norm(end - start))
-        return (_revolved(start, end, radius, radius, 0.0),)
+        return (_revolved(start, end, radius, radius, 0.0, faces),)
     first = shape.radius or 0.0
     last = first if shape.to_radius is None else shape.to_radius
-    return (_revolved(start, end, first, last, shape.inner_radius or 0.0),)
+    return (_revolved(start, end, first, last, shape.inner_radius or 0.0, faces),)
 
 
 def reached(shape: Shape, point: Array) -> tuple[Array, float]:
@@ -68,7 +68,7 @@ def reached(shape: Shape, point: Array) -> tuple[Array, float]:
     return place, max(beyond, beside - max(first, last))
 
 
-def ellipsoid(mass: float, center: Array, inertia: Array) -> Surface:
+def ellipsoid(mass: float, center: Array, inertia: Array, faces: int = ROUND) -> Surface:
     """The even ellipsoid of a mass with that inertia (3, 3) about its centre; flat where there is no such.
 
     a1^2 = 5/(2 m) (A2 + A3 - A1)    of the principal moments A
@@ -78,7 +78,7 @@ def ellipsoid(mass: float, center: Array, inertia: Array) -> Surface:
     if np.linalg.det(axes) < 0.0:
         axes = axes * np.array([1.0, 1.0, -1.0])
     whole = np.sqrt(squares) * axes  # columns are the half axes
-    unit = _sphere(np.zeros(3), 1.0)
+    unit = _sphere(np.zeros(3), 1.0, faces)
     edges = tuple(center + edge @ whole.T for edge in unit.edges)
     return Surface(center + unit.corners @ whole.T, unit.faces, edges)
 
@@ -105,25 +105,25 @@ def across(direction: Array) -> tuple[Array, Array]:
     return first, np.cross(direction, first)
 
 
-def circle(centre: Array, direction: Array, radius: float, count: int = ROUND) -> Array:
+def circle(centre: Array, direction: Array, radius: float, count: int) -> Array:
     """Points (count, 3) of a circle, counter-clockwise about the direction."""
     u, v = across(direction)
     angle = 2.0 * np.pi * np.arange(count) / count
     return np.asarray(centre + radius * (np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v))
 
 
-def _revolved(start: Array, end: Array, first: float, last: float, inner: float) -> Surface:
+def _revolved(start: Array, end: Array, first: float, last: float, inner: float, n: int) -> Surface:
     """A cylinder, cone or tube: its wall in flat faces, its ends, its rims and two lines along it."""
     axis = (end - start) / np.linalg.norm(end - start)
-    low, high = circle(start, axis, first), circle(end, axis, last)
-    corners, n = [low, high], ROUND
+    low, high = circle(start, axis, first, n), circle(end, axis, last, n)
+    corners = [low, high]
     faces: list[tuple[int, ...]] = []
     for k in range(n):
         j = (k + 1) % n
         faces.append((k, j, n + j, n + k))
     edges = [_closed(low), _closed(high), np.array([low[0], high[0]]), np.array([low[n // 2], high[n // 2]])]
     if inner > 0.0:
-        inner_low, inner_high = circle(start, axis, inner), circle(end, axis, inner)
+        inner_low, inner_high = circle(start, axis, inner, n), circle(end, axis, inner, n)
         corners += [inner_low, inner_high]
         for k in range(n):
             j = (k + 1) % n
@@ -135,13 +135,13 @@ def _revolved(start: Array, end: Array, first: float, last: float, inner: float)
     return Surface(np.concatenate(corners), tuple(faces), tuple(edges))
 
 
-def _sphere(centre: Array, radius: float) -> Surface:
+def _sphere(centre: Array, radius: float, n: int) -> Surface:
     """Rings from pole to pole; three great circles as its edges."""
     axis = np.array([0.0, 0.0, 1.0])
     levels = np.pi * np.arange(1, FLOORS) / FLOORS
-    rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a)) for a in levels]
+    rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a), n) for a in levels]
     corners = np.concatenate([*rings, [centre - radius * axis, centre + radius * axis]])
-    n, m = ROUND, len(rings)
+    m = len(rings)
     faces: list[tuple[int, ...]] = []
     for i in range(m - 1):
         for k in range(n):
@@ -150,7 +150,7 @@ def _sphere(centre: Array, radius: float) -> Surface:
     for k in range(n):
         j = (k + 1) % n
         faces += [(m * n, j, k), (m * n + 1, (m - 1) * n + k, (m - 1) * n + j)]
-    edges = tuple(_closed(circle(centre, direction, radius)) for direction in np.eye(3))
+    edges = tuple(_closed(circle(centre, direction, radius, n)) for direction in np.eye(3))
     return Surface(corners, tuple(faces), edges)
 
 
