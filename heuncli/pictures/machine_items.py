@@ -28,6 +28,7 @@ ALONG = 0.35  # of a unit axis that is seen: what shows less of it points at the
 MOST_NAMED = 60  # bodies and joints: beyond that a picture of names alone
 MOST_CENTRES = 40  # bodies whose centres of mass are marked
 BAR, ARM, THIN = 3.0, 2.0, 0.7  # pixels: a body that is lines, lines beside shapes, of an instant not the first
+LEVEL = 1e-6  # of the depth of a picture: what is as far
 DOWN = (0.0, -1.0)
 TURNS: Mapping[str, tuple[str, str]] = {  # how it lets turn, seen along the axis and from aside
     "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"), "all": ("square", "square"),
@@ -65,7 +66,13 @@ class Stood:
     @cached_property
     def solids(self) -> dict[str, tuple[Solid, ...]]:
         """The solids of each body."""
-        return {body.name: tuple(map(solid_of, body.surfaces)) for body in self.machine.bodies}
+        shown = {body.name: body.surfaces for body in self.machine.bodies}
+        for look in self.machine.joints:  # of what cannot turn nobody asks for the inertia
+            if GROUND in (look.a, look.b) and kind_of(look, self.spec).turn.asks == "all":
+                shown |= {
+                    body.name: () for body in self.machine.bodies if body.spread and body.name in (look.a, look.b)
+                }
+        return {name: tuple(map(solid_of, surfaces)) for name, surfaces in shown.items()}
 
     @cached_property
     def pens(self) -> dict[str, int]:
@@ -104,9 +111,14 @@ class Piece(NamedTuple):
 def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
     """The bodies at an instant, far ones first; what lies equally far large ones first."""
     pieces = [piece for body in stood.machine.bodies for piece in _pieces(stood, body, k, thin)]
-    depths = [piece.depth for piece in pieces]
-    step = 1e-6 * ((max(depths) - min(depths)) if depths else 0.0) or 1.0
-    pieces.sort(key=lambda piece: (round(piece.depth / step) if step else 0, -piece.area))
+    depths = [piece.depth for piece in pieces if piece.depth > -np.inf]
+    step = LEVEL * (max(depths) - min(depths)) if depths else 0.0
+
+    def order(piece: Piece) -> tuple[float, float]:
+        level = piece.depth if step == 0.0 or piece.depth == -np.inf else round(piece.depth / step)
+        return float(level), -piece.area
+
+    pieces.sort(key=order)
     return [item for piece in pieces for item in piece.items]
 
 
@@ -116,6 +128,9 @@ def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[Piece]
     for solid in stood.solids[body.name]:
         places = stood.poses.at(body.name, solid.surface.corners, k)
         around = outline(stood.size * stood.view.flat(places))
+        if body.spread:
+            yield Piece(-np.inf, area(around), (Polygon(body.name, around, pen, filled=not thin, width=THIN),))
+            continue
         lines: tuple[Item, ...] = ()
         if not thin:
             edges = edges_seen(solid, stood.poses.attitudes[body.name][k], stood.view)

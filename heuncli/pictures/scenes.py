@@ -89,7 +89,7 @@ def _extent(machine: Machine, centers: Mapping[str, Array], poses: Poses) -> Arr
     """Points (n, 3) that a machine reaches to at the first instant."""
     points = [poses.at(body.name, np.array(p), 0) for body in machine.bodies for p in (centers[body.name],)]
     for body in machine.bodies:
-        own = [surface.corners for surface in body.surfaces] + list(body.lines)
+        own = [surface.corners for surface in body.surfaces if not body.spread] + list(body.lines)
         points += [place for part in own for place in poses.at(body.name, part, 0)]
     points += [poses.at(j.b, j.q, 0) for j in machine.joints] + [poses.at(j.a, j.p, 0) for j in machine.joints]
     return np.array(points)
@@ -176,7 +176,7 @@ def _notes(stood: Stood, pulls: Pulls) -> list[str]:
         notes.append(f"without names: {bodies} bodies and {joints} joints are too many for them")
     if pulls.open:
         notes.append(f"open, and not drawn: the forces and moments of {', '.join(pulls.open)}")
-    spread = [body.name for body in stood.machine.bodies if body.surfaces and not stood.spec.bodies[body.name].shapes]
+    spread = [body.name for body in stood.machine.bodies if body.spread and stood.solids[body.name]]
     if spread:
         notes.append(f"drawn as the ellipsoid that has its inertia: {', '.join(spread)}")
     forces = stood.spec.forces.items()

@@ -70,7 +70,7 @@ def _reaches(stood: Stood, ways: Sequence[Array]) -> tuple[Array, Array, dict[st
         ends += [(own.a, own.p) for own in machine.lines] + [(own.b, own.q) for own in machine.lines]
         core += [stood.seen(body, point, k) for body, point in ends]
         for body in machine.bodies:
-            for part in (*(surface.corners for surface in body.surfaces), *body.lines):
+            for part in (*(solid.surface.corners for solid in stood.solids[body.name]), *body.lines):
                 far[body.name] += list(stood.seen(body.name, part, k))
     for way in ways:
         core += list(way)

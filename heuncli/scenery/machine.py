@@ -22,12 +22,16 @@ OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outsid
 
 
 class BodyLook(NamedTuple):
-    """A body: its named points (3,), the surfaces of its shapes, and lines between its points, or from these to it."""
+    """A body: its named points (3,), the surfaces of its shapes, and lines between its points, or from these to it.
+
+    spread: the surface is not its own, but of the ellipsoid that has its inertia.
+    """
 
     name: str
     points: Mapping[str, Array]
     surfaces: tuple[Surface, ...]
     lines: tuple[Array, ...]
+    spread: bool = False
 
 
 class JointLook(NamedTuple):
@@ -79,9 +83,7 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     return Machine(spec.title, bodies, joints, lines, grounded)
 
 
-def _body(
-    name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int
-) -> BodyLook:
+def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
     """What a body looks like."""
     body = spec.bodies[name]
     points = {key: np.array(point, dtype=np.float64) for key, point in body.points.items()}
@@ -99,7 +101,7 @@ def _body(
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
     if float(np.ptp(line, axis=0).max()) < SMALL * gyration:
-        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), ())
+        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
     return BodyLook(name, points, (), (line,))
 
 

@@ -9,7 +9,6 @@ from heuncli.results import Array
 from heuncli.spec.models import Shape, Vec
 
 ROUND = 24  # faces about an axis
-FLOORS = 12  # of a sphere, from pole to pole
 THIN = 0.015  # radius of a rod that has none, of its length
 
 
@@ -138,7 +137,7 @@ def _revolved(start: Array, end: Array, first: float, last: float, inner: float,
 def _sphere(centre: Array, radius: float, n: int) -> Surface:
     """Rings from pole to pole; three great circles as its edges."""
     axis = np.array([0.0, 0.0, 1.0])
-    levels = np.pi * np.arange(1, FLOORS) / FLOORS
+    levels = np.pi * np.arange(1, n // 2) / (n // 2)
     rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a), n) for a in levels]
     corners = np.concatenate([*rings, [centre - radius * axis, centre + radius * axis]])
     m = len(rings)
