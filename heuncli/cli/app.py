@@ -81,7 +81,6 @@ def _parameter(field: RequestField, defaults: Mapping[str, Any]) -> inspect.Para
                 help=option.help,
                 metavar=option.metavar,
                 show_default=False,
-                hidden=option.later,
                 autocompletion=BY_WORD.get(option.completes),
             ),
         ],

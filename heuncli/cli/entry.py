@@ -13,7 +13,6 @@ from typing import TypeVar
 
 from heuncli.cli import alarm, at_once, memory, plain
 from heuncli.cli.files import ReaderGone
-from heuncli.cli.options import fields_of
 from heuncli.cli.output import emit, say
 from heuncli.cli.registry import Asked
 from heuncli.errors import HeunError, LimitError, Problem
@@ -107,10 +106,6 @@ def _command(argv: list[str]) -> int:
     if isinstance(asked, int):
         return asked
     command, request = asked
-    for field in fields_of(type(request)):
-        if field.option.later and getattr(request, field.name):
-            message = f"{field.option.words[0]}: not in this version yet"
-            raise UsageError(Problem("not-yet", message, hint="leave it out"))
     for name in ("time_limit", "time_limit_each"):
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
     memory.require_some()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 
 from heuncli.cli import terminal
@@ -15,16 +16,16 @@ LEAST, MOST = 40, 400
 
 
 def require_width(width: int | None) -> None:
-    """Say that there are no drawings of that many columns. Raises UsageError."""
+    """Raise UsageError for a width in which nothing can be drawn."""
     if width is not None and not LEAST <= width <= MOST:
         message = f"--width {width}: expected {LEAST} to {MOST} columns"
         raise UsageError(Problem("bad-option", message, hint=f"such as --width {WIDTH}"))
 
 
 def in_letters(figure: Figure, width: int | None, output: str | None = None) -> str:
-    """The figure as text, for the terminal or for a file. Raises UsageError."""
-    require_width(width)
+    """The figure as text, for the terminal or for a file."""
     present = output is None and terminal.present()
     columns = width or (terminal.width() - 1 if present else WIDTH)
-    encoding = sys.stdout.encoding if present else None
+    plain = present and os.environ.get("TERM", "") in terminal.PLAIN
+    encoding = "ascii" if plain else sys.stdout.encoding if present else None
     return drawn(figure, look_of(columns, encoding, colours=present and terminal.styled()))

@@ -14,14 +14,12 @@ from heuncli.named_tuples import NamedTuple
 class Option(NamedTuple):
     """The words of an option (none: an argument), what it does, and what stands for its value in the help.
 
-    later: not in this version yet: hidden in the help, and refused by name; completes: by which of the words of
-    cli/completion.py a shell completes it.
+    completes: by which of the words of cli/completion.py a shell completes it.
     """
 
     words: tuple[str, ...]
     help: str
     metavar: str | None = None
-    later: bool = False
     completes: str = ""
 
 

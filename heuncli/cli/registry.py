@@ -71,6 +71,8 @@ COMMANDS = (
     Command("sensitivity", page="variants"),
     Command("tune", page="variants", grace=0.8, phase="while variants were tried"),
     Command("plot", page="pictures"),
+    Command("show", page="pictures"),
+    Command("report", folder="reporting", page="pictures"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
     Command("methods", page="methods"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -65,6 +65,13 @@ def overrides(words: Sequence[str]) -> dict[str, str]:
             raise UsageError(Problem("bad-option", f"--set {word}: expected NAME=VALUE", hint="such as --set L=1.2"))
         pairs[name.strip()] = value.strip()
     return pairs
+
+
+def require_cases(cases: Collection[str]) -> None:
+    """Raise UsageError where all load cases are asked for, and there is none."""
+    if not cases:
+        hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
+        raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
 
 
 def all_or_errors(calls: Iterable[Callable[[], T]]) -> list[T]:

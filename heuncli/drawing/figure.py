@@ -1,7 +1,7 @@
 """A figure: panels under each other, each with two axes, and in them curves, bands, marks and outlines.
 
 Everything stands in the units of the axes; where it comes to stand in pixels or in the cells of a terminal is told by
-drawing/layout.py and drawing/braille.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
+drawing/layout.py and drawing/letters.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
 """
 
 from __future__ import annotations
@@ -63,7 +63,10 @@ class Arrow(NamedTuple):
 
 
 class Spot(NamedTuple):
-    """A marked place with its words; shape: one of drawing/picture.py."""
+    """A marked place with its words; shape: one of drawing/picture.py.
+
+    note: what is told of it below the panels where the words find no room; the words where it is empty.
+    """
 
     x: float
     y: float
@@ -71,6 +74,16 @@ class Spot(NamedTuple):
     pen: int | None = None
     shape: str = "circle"
     filled: bool = False
+    note: str = ""
+
+
+class Words(NamedTuple):
+    """A few words, or a sign, about a place, without a mark."""
+
+    x: float
+    y: float
+    text: str
+    pen: int | None = None
 
 
 class Symbol(NamedTuple):
@@ -114,10 +127,15 @@ class Label(NamedTuple):
 
 
 class Upright(NamedTuple):
-    """A vertical mark across a panel: an event, a blow, a jump, and its words."""
+    """A vertical mark across a panel: an event, a blow, a jump, and its words; note: as of a spot.
+
+    above: the words stand above the panel.
+    """
 
     x: float
     text: str
+    note: str = ""
+    above: bool = False
 
 
 class Blank(NamedTuple):
@@ -149,7 +167,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Symbol | Link | Label | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Symbol | Link | Label | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):
@@ -190,7 +208,7 @@ class Panel(NamedTuple):
 class Figure(NamedTuple):
     """Panels under each other, a title, what it is of in sentences, and notes below.
 
-    legend: names of pens, with whether they are thin, in their order.
+    legend: names of pens, in their order; marks: names of marks, with their pens and shapes.
     """
 
     title: str
@@ -198,3 +216,4 @@ class Figure(NamedTuple):
     panels: Sequence[Panel]
     legend: Sequence[tuple[str, int]] = ()
     notes: Sequence[str] = ()
+    marks: Sequence[tuple[str, int, str]] = ()

@@ -26,28 +26,34 @@ from heuncli.drawing.figure import (
     Symbol,
     Trace,
     Upright,
+    Words,
 )
-from heuncli.drawing.labels import NOT_NAMED, Wanted, beside
-from heuncli.drawing.pens import BLACK, FAINT, GREY, GRID, WHITE, mixed, pen
+from heuncli.drawing.labels import labelled
+from heuncli.drawing.pens import DIM, FAINT, GREY, GRID, WHITE, ink, mixed, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
+from heuncli.drawing.room import WordBox, left_out
+from heuncli.drawing.scales import Box
 from heuncli.drawing.shades import shade
 from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
+from heuncli.drawing.words import SMALL, SPOT, apart, field_of, wide, words
 from heuncli.foreign_text import shown
-from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.wrapping import wrapped
 
 WIDTH = 820.0  # pixels
 LEFT, RIGHT, TOP = 86.0, 26.0, 26.0
 UNDER, BETWEEN = 44.0, 20.0  # below a panel with the name of its axis, and between panels
-TITLE, NAME, SMALL = 17.0, 12.0, 11.0  # sizes of letters
+TITLE, NAME = 17.0, 12.0  # sizes of letters
 LINE = 16.0  # from one line of text to the next
 LETTER = 0.56  # of the size of letters: their mean width in a sentence
 PER_TICK_X, PER_TICK_Y = 78.0, 34.0  # pixels at least
 HEAD = 8.0  # the head of an arrow
 HATCH = 9.0  # between the lines of a hatch
-NEAR = 4.0  # from a mark to its words
+SEAM = 0.5  # pixels by which a cell goes under the next, else the ground is seen between them
+MARGIN = 8.0  # of the picture, where words may stand beside a panel without axes
+CLOSE = 2.0  # pixels: vertical marks that are closer are one
+POINT = 1.6  # half the size of a point of a curve that stands alone
 TINT, SOLID = 0.14, 0.65  # of a colour in what is filled with it; how much of what is solid hides what is behind
 ORDER = {Area: 0, Line: 1, Mark: 2, Text: 3}  # what lies on what
 LAYERED = {Area: 0, Line: 0, Mark: 0, Text: 1}
@@ -55,63 +61,30 @@ MANY = 8  # corners of an outline, of which those are left out that do not show
 FINE = 0.1  # pixels: what a point of a curve may lie off the line that is drawn
 
 
-class Box(NamedTuple):
-    """The field of a panel in pixels, and its scales."""
-
-    left: float
-    top: float
-    right: float
-    bottom: float
-    across: Scaling
-    up: Scaling
-
-    def x(self, value: float) -> float:
-        """Where a place along the axis across stands."""
-        return self.left + self.across.at(value) * (self.right - self.left)
-
-    def y(self, value: float) -> float:
-        """Where a place along the axis upwards stands."""
-        return self.bottom - self.up.at(value) * (self.bottom - self.top)
-
-    def points(self, x: Array, y: Array) -> Array:
-        """Where points stand, (n, 2)."""
-        return np.column_stack([_along(self.x, x, self.across), _along(self.y, y, self.up)])
-
-
-def _along(at: Callable[[float], float], values: Array, scaling: Scaling) -> Array:
-    """Many values at once on an axis."""
-    values = np.asarray(values, dtype=np.float64)
-    if scaling.logarithmic:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            values = np.log(values)
-        low, high = math.log(scaling.low), math.log(scaling.high)
-    else:
-        low, high = scaling.low, scaling.high
-    first, last = at(scaling.low), at(scaling.high)
-    return np.asarray(first + (values - low) / (high - low) * (last - first))
-
-
 def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
     """The picture of a figure."""
     shapes, y = _heading(figure, width)
     shapes += (legend := _legend(figure, y, width))[0]
     y = legend[1]
-    unnamed: list[str] = []
+    told: list[str] = []
     for panel in figure.panels:
         y += LINE + 4.0 if panel.title else 6.0
+        head = y - 6.0
+        y += LINE * any(isinstance(item, Upright) and item.above for item in panel.items)
         box = _box(panel, y, width)
         if panel.title:
-            shapes.append(Text(box.left, y - 6.0, shown(panel.title), NAME, bold=True))
-        drawn, left_out = _panel(panel, box)
+            shapes.append(Text(box.left, head, shown(panel.title), NAME, bold=True))
+        drawn, without_words = _panel(panel, box, width)
         shapes += drawn
-        unnamed += left_out
+        told += without_words
         y = box.bottom + (UNDER if panel.x.label else BETWEEN)
-    for note in [*figure.notes, *([NOT_NAMED.format(", ".join(unnamed))] if unnamed else [])]:
+    notes = [*figure.notes, *left_out(told)]
+    y += 6.0 if notes else 0.0
+    for note in notes:
         for text in _wrapped(note, SMALL, width):
             shapes.append(Text(20.0, y + 4.0, text, SMALL, colour=GREY))
             y += LINE
-    words = "; ".join(map(shown, figure.words))
-    return Picture(width, y + 8.0, shown(figure.title), words, shapes)
+    return Picture(width, y + 8.0, shown(figure.title), "; ".join(map(shown, figure.words)), shapes)
 
 
 def _heading(figure: Figure, width: float) -> tuple[list[Shape], float]:
@@ -134,18 +107,22 @@ def _wrapped(text: str, size: float, width: float) -> list[str]:
 
 
 def _legend(figure: Figure, y: float, width: float) -> tuple[list[Shape], float]:
-    """A stroke of each pen with its name, as many in a line as fit, and the height below."""
+    """A stroke or mark of each pen with its name, as many in a line as fit, and the height below."""
     shapes: list[Shape] = []
-    if not figure.legend:
+    entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
+    if not entries:
         return shapes, y
     x, y = 20.0, y + 4.0
-    for name, number in figure.legend:
+    for name, number, mark in entries:
         text = shown(name)
-        room = 34.0 + LETTER * NAME * len(text) + 18.0
+        room = 34.0 + wide(text, NAME) + 14.0
         if x > 20.0 and x + room > width - 20.0:
             x, y = 20.0, y + LINE
         own = pen(number)
-        shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), own.colour, 2.0, own.dash))
+        if mark:
+            shapes.append(Mark(x + 14.0, y - 4.0, mark, own.colour, False, SPOT))
+        else:
+            shapes.append(Line(((x, y - 4.0), (x + 28.0, y - 4.0)), own.colour, 2.0, own.dash))
         shapes.append(Text(x + 34.0, y, text, NAME))
         x += room
     return shapes, y + 8.0
@@ -162,19 +139,21 @@ def _box(panel: Panel, top: float, width: float) -> Box:
     return Box(left, top, right, top + height, panel.x, panel.y)
 
 
-def _panel(panel: Panel, box: Box) -> tuple[list[Shape], list[str]]:
-    """The axes and items of a panel, what is filled first, words last; and the words for which there is no room."""
-    drawn = [shape for item in panel.items for shape in _shapes(item, box)]
+def _panel(panel: Panel, box: Box, width: float) -> tuple[list[Shape], list[str]]:
+    """The axes and items of a panel, what is filled first, words last; and what is told of words without room."""
+    items = apart(panel.items, box, CLOSE)
+    drawn = [shape for item in items for shape in _shapes(item, box)]
     order = LAYERED if panel.layered else ORDER
     drawn.sort(key=lambda shape: order[type(shape)])
     filled = 0 if panel.layered else sum(isinstance(shape, Area) for shape in drawn)
-    labels = [
-        Wanted(box.x(item.x), box.y(item.y), shown(item.text), _ink(item.pen), item.spare)
-        for item in panel.items
-        if isinstance(item, Label)
-    ]
-    named, left_out = beside(labels, drawn, (box.left, box.top, box.right, box.bottom), SMALL, LETTER)
-    return [*drawn[:filled], *([] if panel.bare else _axes(box)), *drawn[filled:], *named], left_out
+    room = WordBox(box.left, box.top, box.right, box.bottom)
+    if panel.bare:
+        room = WordBox(MARGIN, box.top, width - MARGIN, box.bottom)
+    field = field_of(drawn, room)
+    texts, told = words(items, box, field)
+    named, without_names = labelled([item for item in items if isinstance(item, Label)], box, field)
+    axes = [] if panel.bare else list(_axes(box))
+    return [*drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
 
 
 def _axes(box: Box) -> Iterator[Shape]:
@@ -183,7 +162,7 @@ def _axes(box: Box) -> Iterator[Shape]:
     for value, text in ticks(box.across, most[0]):
         x = box.x(value)
         yield Line(((x, box.top), (x, box.bottom)), GREY if _is_zero(value, box.across) else FAINT, 0.8)
-        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), BLACK, 0.8)
+        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8)
         if box.across.label:
             yield Text(x, box.bottom + 16.0, shown(text), SMALL, "middle")
     for value, text in ticks(box.up, most[1]):
@@ -191,7 +170,7 @@ def _axes(box: Box) -> Iterator[Shape]:
         yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
         yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    yield Line((*corners, corners[0]), BLACK, 1.0)
+    yield Line((*corners, corners[0]), GREY, 0.8)
     if box.across.label:
         yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
     if box.up.label:
@@ -200,7 +179,7 @@ def _axes(box: Box) -> Iterator[Shape]:
 
 
 def _is_zero(value: float, scaling: Scaling) -> bool:
-    return value == 0.0 and not scaling.logarithmic
+    return value == 0.0 and not scaling.logarithmic and not scaling.named
 
 
 def _shapes(item: Item, box: Box) -> Iterator[Shape]:
@@ -212,13 +191,18 @@ def _shapes(item: Item, box: Box) -> Iterator[Shape]:
 def _trace(item: Trace, box: Box) -> Iterator[Shape]:
     own = pen(item.pen)
     for part in pieces(box.points(item.x, item.y)):
+        if len(part) == 1:
+            yield Mark(float(part[0, 0]), float(part[0, 1]), "circle", own.colour, True, POINT)
+            continue
         line = tuple(map(tuple, thinned(part).tolist()))
-        yield Line(line, own.colour, 0.9 if item.thin else 1.8, own.dash, shown(item.name))
+        yield Line(line, own.colour, 0.9 if item.thin else 1.5, own.dash, shown(item.name))
 
 
 def _band(item: Band, box: Box) -> Iterator[Shape]:
     low, high = box.points(item.x, item.low), box.points(item.x, item.high)
     for part in pieces(np.hstack([low, high])):
+        if len(part) == 1:
+            continue
         around = np.concatenate([thinned(part[:, :2]), thinned(part[:, 2:])[::-1]])
         yield Area(tuple(map(tuple, around.tolist())), pen(item.pen).colour, 0.2, shown(item.name))
 
@@ -234,13 +218,8 @@ def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
             yield Line(tuple(map(tuple, points.tolist())), colour, item.width)
 
 
-def _ink(number: int | None) -> str:
-    """The colour of a pen; None: black."""
-    return BLACK if number is None else pen(number).colour
-
-
 def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
-    colour = _ink(item.pen)
+    colour = ink(item.pen)
     around = box.points(*item.corners.T)
     corners = tuple(map(tuple, thinned(around).tolist())) if len(around) > MANY else tuple(map(tuple, around.tolist()))
     if item.solid:
@@ -252,13 +231,13 @@ def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
 
 def _symbol(item: Symbol, box: Box) -> Iterator[Shape]:
     a, b = box.x(item.along[0]) - box.x(0.0), box.y(item.along[1]) - box.y(0.0)
-    yield from _parts(SYMBOLS[item.symbol].parts, box.x(item.x), box.y(item.y), a, b, _ink(item.pen), item.name)
+    yield from _parts(SYMBOLS[item.symbol].parts, box.x(item.x), box.y(item.y), a, b, ink(item.pen), item.name)
 
 
 def _link(item: Link, box: Box) -> Iterator[Shape]:
     x, y = box.x(item.x), box.y(item.y)
     a, b = box.x(item.to_x) - x, box.y(item.to_y) - y
-    yield from _parts(link(item.kind, math.hypot(a, b)), x, y, a, b, _ink(item.pen), item.name)
+    yield from _parts(link(item.kind, math.hypot(a, b)), x, y, a, b, ink(item.pen), item.name)
 
 
 def _parts(
@@ -283,7 +262,7 @@ def _label(item: Label, box: Box) -> Iterator[Shape]:
 
 
 def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
-    colour = _ink(item.pen)
+    colour = ink(item.pen)
     x0, y0 = box.x(item.x), box.y(item.y)
     x1, y1 = box.x(item.x + item.by_x), box.y(item.y + item.by_y)
     length = math.hypot(x1 - x0, y1 - y0)
@@ -302,22 +281,20 @@ def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
 
 
 def _spot(item: Spot, box: Box) -> Iterator[Shape]:
-    x, y = box.x(item.x), box.y(item.y)
-    colour = _ink(item.pen)
-    yield Mark(x, y, item.shape, colour, item.filled, 3.2)
-    if item.text:
-        text = shown(item.text)
-        room = LETTER * SMALL * len(text)
-        right = x + NEAR + 3.0 + room <= box.right
-        up = -NEAR - 2.0 if y - SMALL - 6.0 > box.top else SMALL + 5.0
-        yield Text(x + (NEAR if right else -NEAR), y + up, text, SMALL, "start" if right else "end")
+    colour = ink(item.pen)
+    yield Mark(box.x(item.x), box.y(item.y), item.shape, colour, item.filled, SPOT)
+
+
+def _words(item: Words, box: Box) -> Iterator[Shape]:
+    colour = ink(item.pen)
+    yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
 
 
 def _upright(item: Upright, box: Box) -> Iterator[Shape]:
     x = box.x(item.x)
-    yield Line(((x, box.top), (x, box.bottom)), GREY, 1.0, (3.0, 3.0), shown(item.text))
-    if item.text:
-        yield Text(x - 3.0, box.top + 4.0, shown(item.text), SMALL, "end", GREY, turned=True)
+    yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
+    if item.above:
+        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
 def _blank(item: Blank, box: Box) -> Iterator[Shape]:
@@ -332,7 +309,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
         low, high = max(left, x), min(right, x + height)
         if low < high:
             yield Line(((low, box.bottom - (low - x)), (high, box.bottom - (high - x))), GRID, 0.7)
-    yield Text((left + right) / 2.0, (box.top + box.bottom) / 2.0, shown(item.text), SMALL, "middle", GREY)
+    yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY, halo=True)
 
 
 def _bars(item: Bars, box: Box) -> Iterator[Shape]:
@@ -352,25 +329,28 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
     )
     known = item.values[np.isfinite(item.values)]
     low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
+    there = np.pad(np.isfinite(item.values), ((0, 1), (0, 1)))
     for j, row in enumerate(item.values.tolist()):
         for i, value in enumerate(row):
-            if math.isfinite(value):
+            if there[j, i]:
                 share = (value - low) / (high - low) if high > low else 0.5
-                corners = ((xs[i], ys[j]), (xs[i + 1], ys[j]), (xs[i + 1], ys[j + 1]), (xs[i], ys[j + 1]))
+                right = xs[i + 1] + (SEAM if there[j, i + 1] else 0.0)
+                upper = ys[j + 1] - (SEAM if there[j + 1, i] else 0.0)
+                corners = ((xs[i], ys[j]), (right, ys[j]), (right, upper), (xs[i], upper))
                 yield Area(tuple((float(a), float(b)) for a, b in corners), shade(share), 1.0)
 
 
 DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Symbol: _symbol,
-    Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
+    Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 
 def pieces(points: Array) -> list[Array]:
-    """The stretches of a course (n, m) between what is not known; single points are none."""
+    """The stretches of a course (n, m) between what is not known; of one point, too."""
     known = np.isfinite(points).all(axis=1)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], known, [False]]).astype(np.int8)))
-    return [points[a:b] for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True) if b - a > 1]
+    return [points[a:b] for a, b in zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True)]
 
 
 def thinned(points: Array) -> Array:

@@ -1,13 +1,13 @@
 """A figure in the cells of a terminal: curves in braille, eight dots a cell, or in letters where it shows no braille.
 
-The items are those of drawing/figure.py. Curves keep the colour of their pen where colours are shown; else, and where
-there is no braille, the pen's letter stands on the curve.
+The items are those of drawing/figure.py. Curves keep the colour of their pen where colours are shown; else the pen's
+letter stands at some places of a curve, and where there is no braille it is drawn with it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -31,11 +31,13 @@ from heuncli.drawing.figure import (
     Symbol,
     Trace,
     Upright,
+    Words,
 )
-from heuncli.drawing.labels import NOT_NAMED
 from heuncli.drawing.pens import pen
+from heuncli.drawing.room import Field, WordBox, columns_of, left_out
 from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
+from heuncli.drawing.words import in_turn
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -49,9 +51,13 @@ PIXELS = 170.0
 DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
-SHADES = " ░▒▓█"
-PLAIN_SHADES = " .:*#"
+SHADES = "·░▒▓█"  # what is not known is blank
+PLAIN_SHADES = ".:*#@"
 RESET = "\x1b[0m"
+NOBODY, SEVERAL = -1, -2  # in place of a pen: what is of no curve, and of more than one
+LETTERS = 3  # of its pen along a curve
+ZERO = 4  # columns from dot to dot of the line at zero
+UPPER = 3  # rows in which the words of vertical marks stand
 
 
 class Look(NamedTuple):
@@ -60,6 +66,11 @@ class Look(NamedTuple):
     width: int
     braille: bool
     colours: bool
+
+    @property
+    def letters(self) -> bool:
+        """Whether curves are told apart by letters."""
+        return not self.colours
 
 
 def look_of(width: int, encoding: str | None, *, colours: bool) -> Look:
@@ -78,9 +89,9 @@ class Canvas:
         self.columns, self.rows, self.across, self.up, self.look = columns, rows, across, up, look
         self.per_x, self.per_y = (ACROSS, DOWN) if look.braille else (1, 1)
         self.dots = np.zeros((rows, columns), dtype=np.int64)
-        self.pens = np.full((rows, columns), -1)
-        self.words: dict[tuple[int, int], str] = {}
-        self.unwritten: list[str] = []
+        self.pens = np.full((rows, columns), NOBODY)
+        self.words: dict[tuple[int, int], tuple[str, int]] = {}
+        self.room = Field(WordBox(0.0, 0.0, columns, rows), (1.0, 1.0))
 
     def x(self, value: float) -> float:
         """The dot of a place along the axis across, from the left."""
@@ -97,7 +108,10 @@ class Canvas:
         if not (0 <= i and 0 <= j and column < self.columns and row < self.rows):
             return
         self.dots[row, column] |= DOTS[j % DOWN][i % ACROSS] if self.look.braille else 1
-        self.pens[row, column] = number
+        there = self.pens[row, column]
+        self.pens[row, column] = number if there < 0 or there == number or not self.look.letters else SEVERAL
+        if number >= 0:
+            self.room.price[row, column] = 1.0
 
     def line(self, x0: float, y0: float, x1: float, y1: float, number: int, every: int = 1) -> None:
         """The dots between two places; every: the how manieth of them is set."""
@@ -108,17 +122,47 @@ class Canvas:
         for k in range(0, steps + 1, every):
             self.dot(x0 + (x1 - x0) * k / steps, y0 + (y1 - y0) * k / steps, number)
 
-    def write(self, text: str, column: int, row: int) -> bool:
-        """Words over the dots, moved to the left where they would leave the panel; not over other words.
+    def write(self, text: str, column: int, row: int, number: int = NOBODY) -> None:
+        """Words over the dots, moved to the left where they would leave the panel; not over other words."""
+        begin = max(0, min(column, self.columns - columns_of(text)))
+        cells = list(in_cells(text, begin, row))
+        if 0 <= row < self.rows and begin >= 0 and not any(cell in self.words for cell, _ in cells):
+            self.words |= {cell: (letter, number) for cell, letter in cells}
+            self.room.take(WordBox(begin, row, begin + columns_of(text), row + 1))
 
-        Returns whether they stand there.
-        """
-        begin = max(0, min(column, self.columns - len(text)))
-        cells = [(row, begin + k) for k in range(len(text))]
-        if not (0 <= row < self.rows and begin + len(text) <= self.columns) or any(c in self.words for c in cells):
-            return False
-        self.words |= dict(zip(cells, text, strict=True))
-        return True
+    def beside(self, text: str, column: int, row: int, number: int) -> bool:
+        """Words beside a cell, where there is room for them; whether there is."""
+        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0)
+        if found is not None:
+            self._put(text, found, number)
+        return found is not None
+
+    def at(self, text: str, column: int, row: int, number: int) -> bool:
+        """Words at a cell or touching it, where there are no others; whether there is room."""
+        wide = columns_of(text)
+        found = self.room.best(
+            (abs(down) + 0.1 * k, WordBox(column + right, row + down, column + right + wide, row + down + 1))
+            for k, (right, down) in enumerate((a, b) for b in (0, -1, 1) for a in (1, -wide, 0, 2, -wide - 1))
+            if down or not -wide < right < 1
+        )
+        if found is not None:
+            self._put(text, found, number)
+        return found is not None
+
+    def along(self, text: str, column: int) -> bool:
+        """Words in one of the upper rows, at the right or left of a column; whether there is room."""
+        wide = columns_of(text)
+        found = self.room.best(
+            (2.0 * row, WordBox(left, row, left + wide + 1, row + 1))  # and a blank behind it
+            for row in range(min(UPPER, self.rows))
+            for left in (column + 1, column - wide - 1)
+        )
+        if found is not None:
+            self._put(text, found, NOBODY)
+        return found is not None
+
+    def _put(self, text: str, box: WordBox, number: int) -> None:
+        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, int(box.left), int(box.top))}
 
     def lines(self) -> list[str]:
         """The rows as text."""
@@ -127,9 +171,9 @@ class Canvas:
     def _row(self, row: int) -> Iterable[str]:
         code = ""
         for column in range(self.columns):
-            word = self.words.get((row, column))
-            number = int(self.pens[row, column])
-            wanted = pen(number).code if word is None and number >= 0 and self.look.colours else ""
+            own = int(self.pens[row, column])
+            word, number = self.words.get((row, column), (None, own))
+            wanted = pen(number).code if number >= 0 and self.look.colours else ""
             if wanted != code:
                 yield RESET if not wanted else f"\x1b[{wanted}m"
                 code = wanted
@@ -143,30 +187,61 @@ class Canvas:
             return " "
         if self.look.braille:
             return chr(BRAILLE + dots)
-        return pen(number).letter if number >= 0 else "."
+        return pen(number).letter if number >= 0 else "." if number == NOBODY else "+"
+
+
+def in_cells(text: str, column: int, row: int) -> Iterator[tuple[tuple[int, int], str]]:
+    """The letters of a text, each with its cell: a wide one takes two, and one that stands over another none."""
+    at: tuple[int, int] | None = None
+    for letter in text:
+        wide = columns_of(letter)
+        if not wide and at is not None:
+            continue
+        at = row, column
+        yield at, letter
+        if wide == 2:
+            yield (row, column + 1), ""
+        column += wide
 
 
 def drawn(figure: Figure, look: Look) -> str:
     """The figure as lines of text; ends with a newline."""
     lines = [line for text in (figure.title, *figure.words) if text for line in wrapped(shown(text), look.width, 0)]
-    legend = "   ".join(f"{_sample(number, look)} {shown(name)}" for name, number in figure.legend)
-    if legend:
-        lines += [legend] if look.colours else wrapped(legend, look.width, 0)
+    lines += _legend(figure, look)
+    told: list[str] = []
     for panel in figure.panels:
-        lines += ["", *_panel(panel, look)]
-    lines += [line for note in figure.notes for line in wrapped(shown(note), look.width, 2)]
+        rows, without_words = _panel(panel, look)
+        lines += ["", *rows]
+        told += without_words
+    lines += [line for note in (*figure.notes, *left_out(told)) for line in wrapped(shown(note), look.width, 2)]
     return "\n".join(lines) + "\n"
 
 
-def _sample(number: int, look: Look) -> str:
-    """How a curve of a pen is told in the legend."""
-    if look.colours:
-        return f"\x1b[{pen(number).code}m{'⠤⠤' if look.braille else pen(number).letter}{RESET}"
-    return pen(number).letter
+def _legend(figure: Figure, look: Look) -> list[str]:
+    """How each curve and mark is told, as many in a line as fit."""
+    lines, room = [""], look.width
+    entries = [*((name, number, "") for name, number in figure.legend), *figure.marks]
+    for name, number, mark in entries:
+        sample = _mark(mark, look, number) if mark else "⠤⠤" if look.colours and look.braille else pen(number).letter
+        wide = columns_of(sample) + 1 + columns_of(shown(name))
+        if lines[-1] and wide + 3 > room:
+            lines.append("")
+            room = look.width
+        text = f"\x1b[{pen(number).code}m{sample}{RESET}" if look.colours else sample
+        lines[-1] += f"{'   ' if lines[-1] else ''}{text} {shown(name)}"
+        room -= wide + 3
+    return lines if entries else []
 
 
-def _panel(panel: Panel, look: Look) -> list[str]:
-    """A panel with its axes."""
+def _mark(shape: str, look: Look, number: int) -> str:
+    """How a marked place is told; points that belong together by the letter of their pen, where no colour tells."""
+    if shape != "circle" and number >= 0:
+        return "+" if look.colours else pen(number).letter
+    return "•" if look.braille else "o"
+
+
+def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
+    """A panel with its axes, and what is told of words that found no room."""
     room = max(look.width - LABEL - 2, 10)
     rows = max(LEAST_ROWS, round(ROWS * panel.height / PIXELS))
     columns = room
@@ -175,13 +250,22 @@ def _panel(panel: Panel, look: Look) -> list[str]:
         unit = min(room / across, ASPECT * rows / up)  # columns a unit
         columns, rows = max(2, round(unit * across)), max(2, round(unit * up / ASPECT))
     canvas = Canvas(columns, rows, panel.x, panel.y, look)
+    if not panel.bare and panel.y.low < 0.0 < panel.y.high and not panel.y.named:
+        canvas.line(0.0, canvas.y(0.0), columns * canvas.per_x - 1.0, canvas.y(0.0), NOBODY, ZERO * canvas.per_x)
     for item in panel.items:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
+    told = _words(panel.items, canvas)
+    key, unnamed = _labels([item for item in panel.items if isinstance(item, Label) and item.letter], canvas)
+    told += unnamed
+    if look.letters and look.braille:
+        _named(panel.items, canvas)
     heads = wrapped(shown(" ".join(part for part in (panel.title, _upward(panel)) if part)), look.width, 0)
     lines = [*(head for head in heads if head)]
     if panel.bare:
-        return lines + canvas.lines() + _key(panel, canvas)
+        return lines + canvas.lines() + key, told
+    above = {round(canvas.x(i.x)) // canvas.per_x: i.text for i in panel.items if isinstance(i, Upright) and i.above}
+    lines += [_placed(above, canvas)] if above else []
     marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
     for row, text in enumerate(canvas.lines()):
         lines.append(
@@ -189,16 +273,60 @@ def _panel(panel: Panel, look: Look) -> list[str]:
             if look.braille
             else f"{shown(marks.get(row, ''))[:LABEL]:>{LABEL}} |{text}"
         )
-    return lines + _below(panel, canvas) + _key(panel, canvas)
+    return lines + _below(panel, canvas) + key, told
 
 
-def _key(panel: Panel, canvas: Canvas) -> list[str]:
-    """What the letters of labels stand for."""
-    labels = [item for item in panel.items if isinstance(item, Label) and item.letter]
-    known = [f"{item.letter} {item.text}" for item in labels if item.letter not in (item.text, *canvas.unwritten)]
-    hidden = [item.text for item in labels if item.letter in canvas.unwritten]
-    told = [", ".join(dict.fromkeys(known)), *([NOT_NAMED.format(", ".join(hidden))] if hidden else [])]
-    return [line for text in told if text for line in wrapped(shown(text), canvas.look.width, 2)]
+def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
+    """The words of spots and vertical marks where they find room; what is told of the others."""
+    told: list[str] = []
+    for item in in_turn(items):
+        column = round(canvas.x(item.x)) // canvas.per_x
+        if isinstance(item, Upright):
+            has_room = canvas.along(shown(item.text), column)
+        else:
+            row = round(canvas.y(item.y)) // canvas.per_y
+            has_room = canvas.beside(shown(item.text), column, row, NOBODY if item.pen is None else item.pen)
+        if not has_room:
+            told.append(item.note or item.text)
+    return told
+
+
+def _labels(items: Sequence[Label], canvas: Canvas) -> tuple[list[str], list[str]]:
+    """The letters of labels, and what they stand for; what is told of those that found no room."""
+    known: dict[str, None] = {}
+    told: list[str] = []
+    for item in items:
+        column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+        if canvas.at(shown(item.letter), column, row, NOBODY if item.pen is None else item.pen):
+            known |= {f"{item.letter} {item.text}": None} if item.letter != item.text else {}
+        elif not item.spare:
+            told.append(item.text)
+    return wrapped(shown(", ".join(known)), canvas.look.width, 2) if known else [], told
+
+
+def _named(items: Sequence[Item], canvas: Canvas) -> None:
+    """The letter of its pen at some places of each curve, where no other one passes."""
+    several = len({item.pen for item in items if isinstance(item, Trace)}) > 1
+    for item in items if several else ():
+        if not isinstance(item, Trace):
+            continue
+        known = np.isfinite(item.x) & np.isfinite(item.y)
+        cells = [
+            (round(canvas.y(y)) // canvas.per_y, round(canvas.x(x)) // canvas.per_x)
+            for x, y in zip(item.x[known].tolist(), item.y[known].tolist(), strict=True)
+        ]
+        own = [cell for cell in dict.fromkeys(cells) if _is_own(canvas, cell, item.pen)]
+        for k in range(LETTERS):
+            if own:
+                row, column = own[min(round((k + 0.5) / LETTERS * len(own)), len(own) - 1)]
+                canvas.write(pen(item.pen).letter, column, row)
+
+
+def _is_own(canvas: Canvas, cell: tuple[int, int], number: int) -> bool:
+    """Whether one curve alone passes a cell."""
+    row, column = cell
+    inside = 0 <= row < canvas.rows and 0 <= column < canvas.columns
+    return inside and cell not in canvas.words and canvas.pens[row, column] == number
 
 
 def _upward(panel: Panel) -> str:
@@ -215,18 +343,27 @@ def _below(panel: Panel, canvas: Canvas) -> list[str]:
     lines = [f"{'':{LABEL}} {corner}{axis}"]
     if not panel.x.label:
         return lines
-    under = [" "] * (canvas.columns + LABEL + 12)
-    for place, text in sorted(places.items()):
-        begin = max(place - len(text) // 2, 0) + LABEL + 2
-        if all(c == " " for c in under[max(begin - 1, 0) : begin + len(text) + 1]):
-            under[begin : begin + len(text)] = shown(text)
     middle = max(0, (canvas.columns - len(panel.x.label)) // 2)
-    return [*lines, "".join(under).rstrip(), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+
+
+def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
+    """A line with words about columns of a panel, as many as do not touch; none goes farther than the panel's edge."""
+    most = canvas.columns + LABEL + 2
+    line = [" "] * most
+    for place, words in sorted(places.items()):
+        text = shown(words)
+        begin = min(max(place - len(text) // 2, 0) + LABEL + 2, most - len(text))
+        if begin >= 0 and all(c == " " for c in line[max(begin - 1, 0) : begin + len(text) + 1]):
+            line[begin : begin + len(text)] = text
+    return "".join(line).rstrip()
 
 
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
     """The dots of a line through points."""
     points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
+    if len(points) == 1 and math.isfinite(sum(points[0])):
+        canvas.dot(*points[0], number)
     for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
             canvas.line(x0, y0, x1, y1, number, every)
@@ -243,16 +380,16 @@ def _band(item: Band, canvas: Canvas) -> None:
 
 def _strokes(item: Strokes, canvas: Canvas) -> None:
     for (x0, y0), (x1, y1) in item.ends.tolist():
-        canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), -1 if item.pen is None else item.pen)
+        canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), NOBODY if item.pen is None else item.pen)
 
 
 def _polygon(item: Polygon, canvas: Canvas) -> None:
     around = np.concatenate([item.corners, item.corners[:1]])
-    _course(canvas, around[:, 0], around[:, 1], -1 if item.pen is None else item.pen)
+    _course(canvas, around[:, 0], around[:, 1], NOBODY if item.pen is None else item.pen)
 
 
 def _arrow(item: Arrow, canvas: Canvas) -> None:
-    number = -1 if item.pen is None else item.pen
+    number = NOBODY if item.pen is None else item.pen
     x, y = canvas.x(item.x + item.by_x), canvas.y(item.y + item.by_y)
     canvas.line(canvas.x(item.x), canvas.y(item.y), x, y, number)
     if item.name:
@@ -260,12 +397,14 @@ def _arrow(item: Arrow, canvas: Canvas) -> None:
 
 
 def _spot(item: Spot, canvas: Canvas) -> None:
+    number = NOBODY if item.pen is None else item.pen
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    canvas.write("o" if not canvas.look.braille else "•", column, row)
-    if item.text:
-        text = shown(item.text)
-        right = column + 1 + len(text) <= canvas.columns
-        canvas.write(text, column + 1 if right else column - len(text), row)
+    canvas.write(_mark(item.shape, canvas.look, number), column, row, number)
+
+
+def _word(item: Words, canvas: Canvas) -> None:
+    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+    canvas.write(shown(item.text), column - len(shown(item.text)) // 2, row)
 
 
 def _symbol(item: Symbol, canvas: Canvas) -> None:
@@ -273,7 +412,9 @@ def _symbol(item: Symbol, canvas: Canvas) -> None:
     shown_as = SYMBOLS[item.symbol]
     letter = shown_as.letter if canvas.look.braille else shown_as.plain
     if letter:
-        canvas.write(letter, round(x) // canvas.per_x, round(y) // canvas.per_y)
+        canvas.write(
+            letter, round(x) // canvas.per_x, round(y) // canvas.per_y, NOBODY if item.pen is None else item.pen
+        )
     elif canvas.look.braille:
         along = canvas.x(item.along[0]) - canvas.x(0.0), canvas.y(item.along[1]) - canvas.y(0.0)
         _parts(shown_as.parts, x, y, along, item.pen, canvas)
@@ -285,7 +426,7 @@ def _link(item: Link, canvas: Canvas) -> None:
     if canvas.look.braille:
         _parts(link(item.kind, DOT * math.hypot(*along)), x, y, along, item.pen, canvas)
     else:
-        canvas.line(x, y, x + along[0], y + along[1], -1 if item.pen is None else item.pen)
+        canvas.line(x, y, x + along[0], y + along[1], NOBODY if item.pen is None else item.pen)
 
 
 def _parts(
@@ -297,29 +438,23 @@ def _parts(
     for part in parts:
         points = [(x + (p * a + q * b) / DOT, y + (p * b - q * a) / DOT) for p, q in part.points]
         for (x0, y0), (x1, y1) in pairwise([*points, *points[: part.closed]]):
-            canvas.line(x0, y0, x1, y1, -1 if number is None else number)
+            canvas.line(x0, y0, x1, y1, NOBODY if number is None else number)
 
 
 def _label(item: Label, canvas: Canvas) -> None:
-    text = shown(item.letter)
-    column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    width = len(text)
-    beside = ((1, 0), (-width, 0), (0, -1), (0, 1), (1, -1), (1, 1), (-width, -1), (-width, 1), (2, 0), (-width - 1, 0))
-    for right, down in beside if text else ():
-        if canvas.write(text, column + right, row + down):
-            return
-    canvas.unwritten += [item.letter] if text and not item.spare else []
+    """Placed when all else is (`_labels`)."""
 
 
 def _upright(item: Upright, canvas: Canvas) -> None:
     x = canvas.x(item.x)
-    canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, -1, 2)
-    if item.text:
-        canvas.write(shown(item.text), round(x) // canvas.per_x + 1, 0)
+    canvas.line(x, 0.0, x, canvas.rows * canvas.per_y - 1.0, NOBODY, DOWN if canvas.look.braille else 1)
 
 
 def _blank(item: Blank, canvas: Canvas) -> None:
     left, right = (round(canvas.x(x)) // canvas.per_x for x in (item.low, item.high))
+    text = f" {shown(item.text)} "
+    if item.text and len(text) <= right - left + 1:
+        canvas.write(text, (left + right + 1 - len(text)) // 2, canvas.rows // 3)
     for row in range(canvas.rows):
         for column in range(max(left, 0), min(right + 1, canvas.columns)):
             canvas.dots[row, column] = 0
@@ -347,7 +482,7 @@ def _cells(item: Cells, canvas: Canvas) -> None:
             value = float(item.values[j, i])
             if math.isfinite(value):
                 share = (value - low) / (high - low) if high > low else 0.5
-                canvas.words.setdefault((row, column), shades[round(share * (len(shades) - 1))])
+                canvas.words.setdefault((row, column), (shades[round(share * (len(shades) - 1))], NOBODY))
 
 
 def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
@@ -357,6 +492,6 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
-    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Symbol: _symbol,
-    Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+    Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _word,
+    Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

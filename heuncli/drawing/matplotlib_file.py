@@ -40,9 +40,8 @@ def rendered(picture: Picture, form: str) -> bytes:
             style = (0.0, tuple(x * POINTS / width for x in shape.dash)) if shape.dash else "solid"
             axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, zorder=place, **AS_IT_IS)
         elif isinstance(shape, Area):
-            axes.add_patch(
-                Polygon(shape.points, facecolor=shape.colour, alpha=shape.opacity, linewidth=0.0, zorder=place)
-            )
+            filled = {"facecolor": shape.colour, "alpha": shape.opacity, "linewidth": 0.0, "zorder": place}
+            axes.add_patch(Polygon(shape.points, **filled))
         elif isinstance(shape, Mark):
             face = shape.colour if shape.filled else "#ffffff"
             own = {"facecolor": face, "edgecolor": shape.colour, "linewidth": 1.2 * POINTS, "zorder": place}
@@ -59,8 +58,11 @@ def rendered(picture: Picture, form: str) -> bytes:
 def write(axes: object, text: Text, place: int) -> None:
     """A line of text."""
     where = {"start": "left", "middle": "center", "end": "right"}[text.anchor]
+    from matplotlib.patheffects import withStroke
+
+    halo = [withStroke(linewidth=3.0 * POINTS, foreground="#ffffff")] if text.halo else None
     axes.text(  # type: ignore[attr-defined]
         text.x, text.y, text.text, parse_math=False, fontsize=text.size * POINTS, color=text.colour, ha=where,
         va="baseline", fontweight="bold" if text.bold else "normal", rotation=90 if text.turned else 0,
-        rotation_mode="anchor", zorder=place,
+        rotation_mode="anchor", zorder=place, path_effects=halo,
     )  # fmt: skip

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from heuncli.named_tuples import NamedTuple
 
-BLACK, GREY, FAINT, GRID, WHITE = "#000000", "#444444", "#e2e2e2", "#c4c4c4", "#ffffff"
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6", "#ffffff"
 
 
 class Pen(NamedTuple):
@@ -34,6 +34,11 @@ PENS = (
 def pen(number: int) -> Pen:
     """The pen of a number; beyond the last they begin anew."""
     return PENS[number % len(PENS)]
+
+
+def ink(number: int | None) -> str:
+    """The colour of the pen of a number; None: black."""
+    return BLACK if number is None else pen(number).colour
 
 
 def mixed(colour: str, share: float) -> str:

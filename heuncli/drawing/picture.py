@@ -49,7 +49,7 @@ class Mark(NamedTuple):
 
 
 class Text(NamedTuple):
-    """A line of text; y is that of its base line, turned: read from below, about its anchor."""
+    """A line of text; y is that of its base line, turned: read from below, about its anchor; halo: white about it."""
 
     x: float
     y: float
@@ -59,6 +59,7 @@ class Text(NamedTuple):
     colour: str = "#000000"
     bold: bool = False
     turned: bool = False
+    halo: bool = False
 
 
 Shape = Line | Area | Mark | Text
@@ -110,9 +111,10 @@ def element(shape: Shape) -> str:
         return f'<polygon points="{places(corners(shape))}" {look}/>'
     turned = f' transform="rotate(-90 {number(shape.x)} {number(shape.y)})"' if shape.turned else ""
     bold = ' font-weight="bold"' if shape.bold else ""
+    halo = ' paint-order="stroke" stroke="#ffffff" stroke-width="3" stroke-linejoin="round"' if shape.halo else ""
     return (
         f'<text x="{number(shape.x)}" y="{number(shape.y)}" font-size="{number(shape.size)}"'
-        f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{turned}>{escaped(shape.text)}</text>'
+        f' text-anchor="{shape.anchor}" fill="{shape.colour}"{bold}{halo}{turned}>{escaped(shape.text)}</text>'
     )
 
 

@@ -11,8 +11,9 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.results_paths import find
 from heuncli.study.ask.curves import numbers_at
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak, report_of
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
 from heuncli.variants.stated import error_of, unit_of
@@ -83,3 +84,10 @@ def values_at(study: Study, path: str, times: Array) -> Array:
         return numbers_at(study, path, times)
     parts = [numbers_at(study, f"{path}.{axis}", times) for axis in "xyz"]
     return np.asarray(np.sqrt(sum(part * part for part in parts)))
+
+
+def vectors_at(study: Study, path: str, times: Array) -> Array:
+    """The vectors at a path at some instants of the run, (n, 3), ascending."""
+    wanted, most = report_of(path) or frozenset(), study.instants_at_once
+    parts = (times[i : i + most] for i in range(0, len(times), most))
+    return np.concatenate([find(study.reports_at(some, wanted), path).values for some in parts])

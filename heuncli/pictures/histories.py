@@ -2,40 +2,54 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Course, Pictured, course_of, instants, jumps_of, values_at
+from heuncli.pictures.courses import Course, Pictured, course_of, instants, values_at
+from heuncli.pictures.happenings import instant, marks_of
+from heuncli.pictures.measurements import Measured, seen
+from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
-from heuncli.results import Array, Results
+from heuncli.results import Array
 from heuncli.study.ask.measure import Peak
 from heuncli.variants.stated import unit_of
 
-DIGITS = 5  # of the words at an extreme
-MOST_MARKS = 12  # vertical marks with words; beyond, without
+DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
 VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
-
-
-class Measured(NamedTuple):
-    """Points that were measured, (n,): over what a panel shows, in SI, and of which unit."""
-
-    name: str
-    unit: str
-    x: Array
-    y: Array
+SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
+STEADY = 1e-9  # of its size: what varies by less does not vary
+HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
+OVER_NOTHING = "beyond the horizon: nothing is claimed"
+ALL_OPEN = "open: the laws of rigid bodies do not give this number"
+# what is measured in a unit, as axes tell it
+QUANTITIES = {
+    "N": "force", "N·m": "moment", "N·s": "impulse", "N·m·s": "angular impulse", "m": "length", "rad": "angle",
+    "m/s": "velocity", "rad/s": "angular velocity", "m/s²": "acceleration", "rad/s²": "angular acceleration",
+    "J": "energy", "W": "power", "Pa": "stress",
+}  # fmt: skip
 
 
 class Drawn(NamedTuple):
-    """A course in a panel: its name in the legend, its pen, over what it is drawn (n,)."""
+    """A course in a panel: its name in the legend, its pen, its run, and over what it is drawn (n,), in SI."""
 
     name: str
     pen: int
+    source: Pictured
     x: Array
     course: Course
+
+
+class Across(NamedTuple):
+    """The axis across: the path along it (None: time), its unit as it is shown, and how many of that are one in SI."""
+
+    over: str | None
+    unit: str
+    size: float
 
 
 def history(
@@ -47,28 +61,31 @@ def history(
 ) -> Figure:
     """The figure of some paths, of one run or of several over each other; over: the path along the axis across."""
     drawn = list(_drawn(sources, paths, over))
-    results = sources[0].study.results
-    across, size = _across(sources[0], over, units)
-    xs = np.concatenate([each.x for each in drawn] + [each.x for each in measured]) * size
-    known = xs[np.isfinite(xs)]
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    if over is None and results.accuracy.get("horizon") is not None:
-        high = float(results.time[-1])
-    x = Scaling(across, *ends(low, high, spare=0.0 if over is None else 0.04))
+    across = Across(over, *(("s", 1.0) if over is None else units.of(unit_of(over, sources[0].study.spec))))
     groups: dict[str, list[Drawn]] = {}
     for each in drawn:
         groups.setdefault(each.course.unit, []).append(each)
-    marks = [] if over is not None else list(_marks(sources, drawn))
-    points = {unit: [each for each in measured if each.unit == unit] for unit in groups}
-    panels = [
-        _panel(unit, own, points[unit], units, x._replace(label=""), size, marks, named=not k)
-        for k, (unit, own) in enumerate(groups.items())
-    ]
+    x = _axis_across(sources, drawn, measured, across)
+    marks, notes = ([], []) if over is not None else marks_of(sources, [each.course for each in drawn])
+    height = HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
+    panels: list[Panel] = []
+    for unit, own in groups.items():
+        here = [(len(drawn) + k, each) for k, each in enumerate(measured) if each.unit == unit]
+        y = _axis_up(unit, own, [each for _, each in here], units)
+        size = units.of(unit)[1]
+        words = marks if not panels else [Upright(mark.x, "") for mark in marks]
+        items = [*words, *_blanks(sources, own, x, across), *_curves(own, y, size, across)]
+        items += [item for pen, each in here for item in seen(each, pen, across.size, size)]
+        panels.append(Panel(x._replace(label=""), y, tuple(items), height))
     panels[-1] = panels[-1]._replace(x=x)
-    legend = [(each.name, each.pen) for each in drawn]
-    legend += [(each.name, len(drawn) + k) for k, each in enumerate(measured)]
-    words = [sentence for source in sources for sentence in _words(source)]
-    return Figure(results.title, words, panels, legend, _notes(drawn))
+    return Figure(
+        " · ".join(dict.fromkeys(source.study.results.title for source in sources)),
+        [sentence for source in sources for sentence in _words(source)],
+        panels,
+        [(each.name, each.pen) for each in drawn],
+        [*_notes(drawn, panels), *notes],
+        [(each.name, len(drawn) + k, "square") for k, each in enumerate(measured)],
+    )
 
 
 def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) -> Iterator[Drawn]:
@@ -77,46 +94,50 @@ def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) 
     for source in sources:
         times = instants(source.study)
         x = times if over is None else values_at(source.study, over, times)
-        for path in paths:
+        for path in dict.fromkeys(paths):
             name = f"{source.name}: {path}" if source.name else path
-            yield Drawn(name, number, x, course_of(source.study, path, times))
+            yield Drawn(name, number, source, x, course_of(source.study, path, times))
             number += 1
 
 
-def _across(source: Pictured, over: str | None, units: Units) -> tuple[str, float]:
-    """What the axis across tells, and how many of its unit are one in SI."""
-    if over is None:
-        return "t [s]", 1.0
-    unit, size = units.of(unit_of(over, source.study.spec))
-    return f"{over} [{unit}]", size
+def _axis_across(
+    sources: Sequence[Pictured], drawn: Sequence[Drawn], measured: Sequence[Measured], across: Across
+) -> Scaling:
+    """The axis across all panels; that of time goes on beyond horizons, to the end of the longest run."""
+    values = [each.x for each in drawn] + [each.x for each in measured]
+    if across.over is None:
+        values += [source.study.results.time for source in sources]
+    low, high = _range(np.concatenate(values) * across.size)
+    label = f"{across.over or 't'} [{across.unit if across.unit not in ('', '1') else '-'}]"
+    if low == high:  # one instant alone: nothing is claimed about it
+        return Scaling(label, *ends(low, high), named=((low, short(low)),))
+    return Scaling(label, *ends(low, high, spare=0.0 if across.over is None else 0.04))
 
 
-def _panel(
-    unit: str,
-    drawn: Sequence[Drawn],
-    measured: Sequence[Measured],
-    units: Units,
-    x: Scaling,
-    size_x: float,
-    marks: Sequence[Upright],
-    *,
-    named: bool,
-) -> Panel:
-    """The panel of one unit; named: whether the vertical marks have their words in it."""
+def _axis_up(unit: str, drawn: Sequence[Drawn], measured: Sequence[Measured], units: Units) -> Scaling:
+    """The axis of a panel: around what is drawn, with zero where that is near."""
     shown, size = units.of(unit)
-    values = np.concatenate([each.course.values for each in drawn] + [each.y for each in measured]) * size
-    peaks = [size * peak.value for each in drawn for peak in (each.course.low, each.course.high)]
-    known = np.concatenate([values[np.isfinite(values)], [value for value in peaks if np.isfinite(value)]])
-    low, high = (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-    y = Scaling(f"[{shown}]" if shown != "1" else "[-]", *ends(low, high, zero=_near_zero(low, high), spare=0.12))
-    items: list[Item] = [Upright(mark.x, mark.text if named else "") for mark in marks]
-    items += [item for each in drawn for item in _course(each, y, size, size_x)]
-    for number, each in enumerate(measured):
-        pen = len(drawn) + number
-        items += [Spot(a * size_x, b * size, "", pen, "square") for a, b in zip(each.x, each.y, strict=True)]
-    if size_x == 1.0 and x.high > (last := max(float(each.course.times[-1]) for each in drawn)) and not measured:
-        items.append(Blank(last, x.high, "beyond the horizon: nothing is claimed"))
-    return Panel(x, y, tuple(items))
+    label = f"{QUANTITIES.get(unit, '')} [{'-' if shown in ('', '1') else shown}]".strip()
+    if _all_open(drawn):
+        return Scaling(label, 0.0, 1.0, named=((0.0, ""),))
+    peaks = [peak.value for each in drawn for peak in (each.course.low, each.course.high)]
+    low, high = _range(np.concatenate([*(each.course.values for each in drawn), *(each.y for each in measured), peaks]))
+    error = max(each.course.error or 0.0 for each in drawn)
+    if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
+        low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
+    low, high = ends(size * low, size * high, zero=_near_zero(low, high), spare=SPARE)
+    return Scaling(label, low, high)
+
+
+def _all_open(drawn: Sequence[Drawn]) -> bool:
+    """Whether there is nothing to draw."""
+    return all(np.isnan(each.course.values).all() for each in drawn)
+
+
+def _range(values: Array) -> tuple[float, float]:
+    """The least and the greatest that is known; 0 and 1 where nothing is."""
+    known = values[np.isfinite(values)]
+    return (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
 
 
 def _near_zero(low: float, high: float) -> bool:
@@ -124,64 +145,87 @@ def _near_zero(low: float, high: float) -> bool:
     return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
-def _course(drawn: Drawn, y: Scaling, size: float, size_x: float) -> Iterator[Item]:
-    """A curve with the band of its error, where that is seen, and its extremes."""
-    course = drawn.course
-    values, x = size * course.values, size_x * drawn.x
-    error = size * (course.error or 0.0)
-    if error > VISIBLE * (y.high - y.low) and np.isfinite(error):
-        yield Band(f"stated error of {drawn.name}", x, values - error, values + error, drawn.pen)
-    yield Trace(drawn.name, x, values, drawn.pen)
-    if drawn.x is course.times:
-        yield from _extremes(drawn, size)
-
-
-def _extremes(drawn: Drawn, size: float) -> Iterator[Spot]:
-    """The lowest and the highest with their values and instants; of what does not vary neither."""
-    low, high = drawn.course.low, drawn.course.high
-    if not high.value - low.value > 1e-9 * max(abs(low.value), abs(high.value)):
+def _blanks(sources: Sequence[Pictured], drawn: Sequence[Drawn], x: Scaling, across: Across) -> Iterator[Item]:
+    """What stays empty, and why: beyond the horizon of every run, or all of a panel whose numbers are open."""
+    if _all_open(drawn):
+        yield Blank(x.low, x.high, ALL_OPEN)
         return
-    peaks: list[Peak] = [high, low]
-    for peak in peaks:
-        if peak.at is not None and np.isfinite(peak.value):
-            text = f"{size * peak.value:.{DIGITS}g} at {short(float(f'{peak.at:.4g}'))} s"
-            yield Spot(peak.at, size * peak.value, text, drawn.pen, filled=True)
+    claimed = max(
+        float(results.time[-1]) if (horizon := results.accuracy.get("horizon")) is None else horizon
+        for results in (source.study.results for source in sources)
+    )
+    if across.over is None and any(claimed < source.study.results.time[-1] for source in sources):
+        yield Blank(claimed, x.high, OVER_NOTHING)
 
 
-def _marks(sources: Sequence[Pictured], drawn: Sequence[Drawn]) -> Iterator[Upright]:
-    """Events, blows and jumps of what is drawn, each instant once."""
-    found: dict[float, str] = {}
-    for source in sources:
-        for at, words in _happenings(source.study.results).items():
-            found.setdefault(at, words)
+def _curves(drawn: Sequence[Drawn], y: Scaling, size: float, across: Across) -> Iterator[Item]:
+    """The curves with the bands of their errors, where these are seen, and their extremes."""
     for each in drawn:
-        for at in jumps_of(each.course).tolist():
-            if not any(abs(at - other) <= 1e-9 * max(1.0, abs(at)) for other in found):
-                found[at] = ""
-    spoken = len([words for words in found.values() if words]) <= MOST_MARKS
-    for at, words in sorted(found.items()):
-        yield Upright(at, words if spoken else "")
+        values, x = size * each.course.values, across.size * each.x
+        error = size * (each.course.error or 0.0)
+        if error > VISIBLE * (y.high - y.low) and np.isfinite(error):
+            yield Band(f"stated error of {each.name}", x, values - error, values + error, each.pen)
+        yield Trace(each.name, x, values, each.pen)
+    for each in drawn:
+        yield from _extremes(each, size, across)
 
 
-def _happenings(results: Results) -> Mapping[float, str]:
-    """The instants of blows and events with their names."""
-    found = {float(blow["time"]): ", ".join(blow["names"]) or "blow" for blow in results.impulses}
-    for name, event in results.events.items():
-        for at in np.asarray(event["time"]).tolist():
-            found.setdefault(float(at), name)
-    return found
+def _extremes(drawn: Drawn, size: float, across: Across) -> Iterator[Spot]:
+    """The lowest and the highest with their values and instants; of what does not vary its value."""
+    low, high, error = drawn.course.low, drawn.course.high, drawn.course.error or 0.0
+    varies = high.value - low.value > max(STEADY * max(abs(low.value), abs(high.value)), 2.0 * error)
+    for word, peak in (("greatest", high), ("least", low)) if varies else (("", high),):
+        if peak.at is None or not math.isfinite(peak.value):
+            continue
+        x, at = _place(drawn, peak, across)
+        if varies:
+            text = f"{figures(peak.value, error, size)} at {at}"
+        else:
+            text = figures(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
+        yield Spot(x, size * peak.value, text, drawn.pen, filled=True, note=f"{drawn.name}: {word} {text}")
+
+
+def _place(drawn: Drawn, peak: Peak, across: Across) -> tuple[float, str]:
+    """Where an extreme stands along the axis across, and that in words."""
+    assert peak.at is not None
+    if across.over is None:
+        return peak.at, instant(peak.at)
+    x = across.size * float(values_at(drawn.source.study, across.over, np.array([peak.at]))[0])
+    return x, f"{short(float(f'{x:.4g}'))} {across.unit}".rstrip(" 1")
+
+
+def figures(value: float, error: float, size: float) -> str:
+    """A number in its unit as it is shown, to no more digits than its error leaves."""
+    if value == 0.0 or abs(value) <= error:
+        return "0"
+    known = DIGITS
+    if error > 0.0:
+        known = min(DIGITS, math.floor(math.log10(abs(value))) - math.floor(math.log10(error)))
+    return short(float(f"{size * value:.{max(known, 1)}g}"))
 
 
 def _words(source: Pictured) -> Iterator[str]:
     """Of which run it is, and how well that is known."""
     results = source.study.results
     horizon = results.accuracy.get("horizon")
-    file = str(results.spec.get("path", ""))
-    told = f"{source.name or file}: {results.model.get('method', '')}"
-    yield told + (f"; nothing is claimed from t = {horizon:.6g} s on" if horizon is not None else "")
+    parts = [source.name or str(results.spec.get("path", "")), f"method {results.model.get('method', 'none')}"]
+    motion = results.accuracy.get("estimate", {}).get("motion")
+    if motion:
+        parts.append(f"motion estimated to {rough(motion)} of the scene's size")
+    if "axes" in results.model and any(results.joints):
+        parts.append(f"joint loads in the axes of the '{results.model['axes']}' body")
+    if horizon is not None:
+        parts.append(f"nothing is claimed from t = {horizon:.6g} s on")
+    yield "; ".join(parts)
 
 
-def _notes(drawn: Sequence[Drawn]) -> list[str]:
-    """What is open somewhere, and so is not drawn there."""
-    lost = [each.name for each in drawn if np.isnan(each.course.values).any()]
-    return [f"open or not known in parts, and not drawn there: {', '.join(lost)}"] if lost else []
+def _notes(drawn: Sequence[Drawn], panels: Sequence[Panel]) -> list[str]:
+    """What is open, throughout or somewhere, and so is not drawn there; what bands are."""
+    gaps = [np.isnan(each.course.values) for each in drawn]
+    all_open = [each.name for each, lost in zip(drawn, gaps, strict=True) if lost.all()]
+    in_parts = [each.name for each, lost in zip(drawn, gaps, strict=True) if lost.any() and not lost.all()]
+    notes = [f"open, and not drawn: {', '.join(all_open)}"] if all_open else []
+    notes += [f"open or not known at some instants, and not drawn there: {', '.join(in_parts)}"] if in_parts else []
+    if any(isinstance(item, Band) for panel in panels for item in panel.items):
+        notes.append("light bands: the stated error")
+    return notes

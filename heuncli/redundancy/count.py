@@ -63,13 +63,13 @@ def counted_without_loads(layout: Layout, drives: tuple[Expression, ...], holdin
 def counted(runner: Evaluator) -> Redundancy:
     """Count what is held twice in a scene with closed chains."""
     from heuncli.redundancy.neighbours import neighbours  # a tree starts faster without them
-    from heuncli.redundancy.self_stress import KnownStress, poses_of, self_stress, stress_of
+    from heuncli.redundancy.self_stress import KnownStress, self_stress, stress_of, stress_poses
 
     layout = runner.layout
     here = runner.recovered(np.zeros(1), layout.y0[None, :])
     closed = int(here.rows["closed"][0].sum())
     states = body_states(layout, here)
-    poses = poses_of(here, states)
+    poses = stress_poses(here, states)
     stress = stress_of(runner, poses)
     known = KnownStress(poses, stress)
     at_start, joints = int(stress.count[0]), layout.mechanism.joints

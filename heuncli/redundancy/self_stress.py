@@ -50,7 +50,7 @@ class SelfStress:
 
 
 @record
-class Poses:
+class StressPoses:
     """All that the self-stresses of a scene hang on at some instants: no load, and nothing that answers one.
 
     times (n_t,) [s], states (n_t, n), gap (n_t,) as in Recovered; closed, chosen (n_t, rows), f, m (n_t, rows, 3): of
@@ -76,14 +76,14 @@ class Poses:
 class KnownStress:
     """The self-stresses of some poses, found before."""
 
-    poses: Poses
+    poses: StressPoses
     stress: SelfStress
 
 
-def poses_of(recovered: Recovered, states: BodyStates) -> Poses:
+def stress_poses(recovered: Recovered, states: BodyStates) -> StressPoses:
     """What self-stresses hang on at recovered states."""
     rows = recovered.rows
-    return Poses(
+    return StressPoses(
         recovered.times, recovered.states, recovered.gap, rows["closed"], rows["chosen"], rows["f"], rows["m"],
         states.R, states.x,
     )  # fmt: skip
@@ -98,13 +98,13 @@ def self_stress(
     """
     if not runner.layout.rows:
         return None
-    poses = poses_of(recovered, states)
+    poses = stress_poses(recovered, states)
     if known is not None and same(poses, known.poses):
         return known.stress
     return stress_of(runner, poses)
 
 
-def stress_of(runner: Evaluator, poses: Poses) -> SelfStress:
+def stress_of(runner: Evaluator, poses: StressPoses) -> SelfStress:
     """All self-stresses of poses."""
     layout, n_t = runner.layout, len(poses.times)
     J = jacobian(runner.workspace, layout, poses.times, poses.states)
@@ -187,7 +187,7 @@ def _null_of(J: Array, rank: Indices) -> tuple[Array, Values]:
     return Z, values
 
 
-def _shares(runner: Evaluator, poses: Poses, Z: Array) -> Array:
+def _shares(runner: Evaluator, poses: StressPoses, Z: Array) -> Array:
     """Shares of multipliers Z (n_t, rows, k) in every joint with its drive and its stops, (n_j, n_t, 6, k).
 
     A joint of the tree balances what hangs on it; a cut one carries its rows; stops carry theirs beside it.

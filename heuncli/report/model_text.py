@@ -27,9 +27,9 @@ LISTS = (
 def note(title: str, model: Mapping[str, Any]) -> str:
     """The model block as text."""
     lines = [shown(title) or "untitled", ""]
-    facts = [(key, text) for key, text in _facts(model) if text]
-    width = max(len(key) for key, _ in facts)
-    lines += [f"  {key.ljust(width)}  {text}" for key, text in facts]
+    counted = [(key, text) for key, text in facts(model) if text]
+    width = max(len(key) for key, _ in counted)
+    lines += [f"  {key.ljust(width)}  {text}" for key, text in counted]
     for key, heading in LISTS:
         sentences: Sequence[str] = model.get(key) or ()
         if sentences:
@@ -39,7 +39,8 @@ def note(title: str, model: Mapping[str, Any]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
+def facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """What is counted, and by which method, label and text; the text is empty where there is none."""
     freedoms, names = model.get("freedoms"), model.get("names", {})
     grubler = model.get("grubler")
     spins = int(model.get("undetermined", 0))

@@ -6,19 +6,25 @@ import numpy as np
 
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.results import Array, Results
 from heuncli.scenery.machine import GROUND
+from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
 
 MOTION = frozenset({"motion"})
+Y, Z = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
 
 class Poses(NamedTuple):
-    """Of each body the places of its origin (n, 3) and its attitudes (n, 3, 3), whose columns are its axes."""
+    """Of each body the places of its origin (n, 3) and its attitudes (n, 3, 3), whose columns are its axes.
+
+    turns: the attitudes as unit quaternions w, x, y, z, (n, 4); none of what is only assembled.
+    """
 
     times: Array
     places: dict[str, Array]
     attitudes: dict[str, Array]
+    turns: dict[str, Array]
 
     def at(self, body: str, points: Array, k: int) -> Array:
         """Where points (..., 3) of a body stand in the world at the instant of a number."""
@@ -29,13 +35,26 @@ class Poses(NamedTuple):
 
 def poses_of(study: Study, times: Array) -> Poses:
     """The poses at instants of the run, (n,) ascending."""
-    found = study.results if study.of_one_instant else study.reports_at(times, MOTION)
+    return poses_in(study.results if study.of_one_instant else study.reports_at(times, MOTION))
+
+
+def poses_in(found: Results) -> Poses:
+    """The poses that results with motions have."""
     places = {name: body["position"] for name, body in found.bodies.items()}
-    return Poses(found.time, places, {name: body["rotation"] for name, body in found.bodies.items()})
+    attitudes = {name: body["rotation"] for name, body in found.bodies.items()}
+    return Poses(found.time, places, attitudes, {name: body["quaternion"] for name, body in found.bodies.items()})
+
+
+def up_of(spec: Spec, poses: Poses) -> Array:
+    """The unit direction (3,) that is up: against gravity; without it y of what turns about z alone, else z."""
+    gravity = np.array(spec.gravity, dtype=np.float64)
+    if gravity.any():
+        return np.asarray(-gravity / np.linalg.norm(gravity))
+    return Y if all(np.allclose(axes[:, :, 2], Z) for axes in poses.attitudes.values()) else Z
 
 
 def poses_at_start(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
     """The poses in which a scene is assembled."""
-    own = enumerate(body.name for body in mechanism.bodies)
-    places = {name: start.position[None, i] for i, name in own}
-    return Poses(np.array([t]), places, {name: start.rotation[None, i] for i, name in enumerate(places)})
+    names = [body.name for body in mechanism.bodies]
+    places, attitudes = (dict(zip(names, own[:, None], strict=True)) for own in (start.position, start.rotation))
+    return Poses(np.array([t]), places, attitudes, {})

@@ -55,20 +55,26 @@ def load(
 
 
 def load_with_cases(
-    path: str, overrides: Mapping[str, str] | None = None, checking: bool = True
+    path: str,
+    overrides: Mapping[str, str] | None = None,
+    checking: bool = True,
+    text: str | None = None,
+    files: NamedFiles | None = None,
 ) -> tuple[Spec, dict[str, Spec]]:
-    """The scene, and each of its load cases by its name, of one reading of the file.
+    """The scene, and each of its load cases by its name, of one reading of the file, or of a text that stands for it.
+
+    files: those that the spec names; None: they stand beside it.
 
     Raises SpecError with all problems of the scene, else with those of all cases, which are named in them.
     """
     begin_file()
-    source = read(path, None)
-    spec = Loading(path, source, overrides or {}, checking, None).spec()
+    source = read(path, text)
+    spec = Loading(path, source, overrides or {}, checking, None, files).spec()
     cases: dict[str, Spec] = {}
     problems: list[Problem] = []
     for name in spec.cases:
         try:
-            cases[name] = Loading(path, source, overrides or {}, checking, name).spec()
+            cases[name] = Loading(path, source, overrides or {}, checking, name, files).spec()
         except SpecError as error:
             problems += [each._replace(message=f"in case {name}: {each.message}") for each in error.problems]
     if problems:

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.commands.balance.asked import AskedWeight, BalanceOptions
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.balancing.study import balance
 from heuncli.spec.load import load
 
 ENGINE = Path(__file__).parents[2] / "specs" / "six_cylinder.yaml"

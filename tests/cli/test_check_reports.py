@@ -10,10 +10,11 @@ import pytest
 import xmlschema
 from junitparser import Error, Failure, JUnitXml, Skipped
 
-from heuncli.commands.check.checked import Checked, Outcome
+from heuncli.commands.check.checked import Checked
 from heuncli.commands.check.junit import junit_text
 from heuncli.errors import Problem
 from heuncli.report.workflow_lines import MOST, Annotation, lines
+from heuncli.telling.outcomes import Outcome
 from tests.shared.command import HANGING, Heun
 
 SCHEMA = xmlschema.XMLSchema(str(Path(__file__).with_name("junit.xsd")))

@@ -61,7 +61,7 @@ def test_a_page_goes_into_a_file(heun: Heun, tmp_path: Path) -> None:
         ("side", "see heun explain format (Sections)"),
         ("rope", "see heun explain howto (Rope) and heun explain format (Joints)"),
         ("spring", "see heun explain format (turn_spring, spring)"),
-        ("axes", "see heun explain signs (Joints) and heun explain commands (heun run)"),
+        ("axes", "see heun explain signs (Joints) and heun explain commands (heun run, heun plot"),
         ("tilting", "see heun explain results (Paths)"),
         ("rpm", "see heun explain format (Units, Expressions)"),
         ("RK4", "see heun explain methods (The list)"),

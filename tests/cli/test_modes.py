@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
+from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
 from tests.shared.command import Heun
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.sweep.store.store import Store
 from heuncli.errors import OutputError
+from heuncli.sweeps.store.store import Store
 from heuncli.variants.asking import Answer, Asker, Measured
 from tests.shared.command import HANGING, Done, Heun
 from tests.shared.shell import shell

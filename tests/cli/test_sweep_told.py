@@ -17,12 +17,12 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from heuncli.commands.sweep.rows import SweepHead, SweptMeasure, SweptRow
 from heuncli.commands.sweep.telling import as_parquet, told
 from heuncli.commands.sweep.telling.page import tables
 from heuncli.commands.sweep.telling.told import Telling
 from heuncli.report.table_units import Units, asked
 from heuncli.report.text_table import plain
+from heuncli.sweeps.rows import SweepHead, SweptMeasure, SweptRow
 from heuncli.variants.asking import Answer, Measured
 from heuncli.variants.axes import Drawn, ParameterAxis, axis_of
 from heuncli.variants.draws import draws_of

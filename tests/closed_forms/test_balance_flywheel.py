@@ -8,9 +8,9 @@ from typing import Any
 
 import pytest
 
-from heuncli.commands.balance.asked import AskedWheel, BalanceOptions
-from heuncli.commands.balance.results import Flywheel
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.asked import AskedWheel, BalanceOptions
+from heuncli.balancing.results import Flywheel
+from heuncli.balancing.study import balance
 from heuncli.errors import SolveError
 from heuncli.spec.load import load
 from heuncli.study.workflow import solve

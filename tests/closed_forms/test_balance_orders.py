@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.study import balance
 from heuncli.spec.load import load
 from tests.shared.cycling import RPM, Cylinder, amplitude, balance_of, engine, row_of
 

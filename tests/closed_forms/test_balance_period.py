@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.balance.asked import BalanceOptions
-from heuncli.commands.balance.results import BalanceResults
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.results import BalanceResults
+from heuncli.balancing.study import balance
 from heuncli.errors import SolveError
 from heuncli.spec.load import load
 from tests.shared.command import Heun

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.balance.asked import AskedWeight, BalanceOptions
-from heuncli.commands.balance.results import BalanceResults, Counterbalance
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.balancing.results import BalanceResults, Counterbalance
+from heuncli.balancing.study import balance
 from heuncli.spec.load import load
 from tests.shared.cycling import RPM, Cylinder, balance_of, engine, four_bar
 

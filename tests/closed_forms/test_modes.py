@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.modes.study import modes
 from heuncli.linearisation.modes import SceneModes
+from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.governors import porter, spindle

@@ -15,10 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.commands.modes.study import modes
 from heuncli.errors import SolveError
 from heuncli.linearisation.modes import SceneModes
 from heuncli.linearisation.oscillations import Mode
+from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
 from tests.honesty.indifferent import PARTS, Bench
 from tests.honesty.rest_poses import spread

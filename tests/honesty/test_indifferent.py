@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.modes.study import modes
+from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
 from tests.honesty.indifferent import PARTS, TYPED, Bench, law, spring_arm, turntable
 from tests.oracle.values import to_yaml

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.balance.harmonics import orders_of
+from heuncli.balancing.harmonics import orders_of
 from heuncli.results import Array
 from tests.oracle.turns import random_rotation
 from tests.shared.cycling import Cylinder, amplitude, balance_of, engine, four_bar

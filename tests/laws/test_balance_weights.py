@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.balance.asked import AskedWeight
-from heuncli.commands.balance.results import BalanceResults, PlacedWeight
+from heuncli.balancing.asked import AskedWeight
+from heuncli.balancing.results import BalanceResults, PlacedWeight
 from heuncli.errors import SolveError
 from heuncli.records import replace
 from tests.shared.cycling import balance_of, four_bar

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.modes.study import require_no_time, state_of
 from heuncli.errors import SolveError
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.run.request import MotionTask
@@ -16,6 +15,7 @@ from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced_equations import idle_spins
 from heuncli.linearisation.steady_motion import Looked, carried_on
+from heuncli.oscillations.study import require_no_time, state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up

@@ -130,7 +130,7 @@ def methods() -> Iterator[tuple[str, ...]]:
 
 def options(command: Command) -> Iterator[tuple[str, str]]:
     """The arguments and options of a command."""
-    for option in (field.option for field in fields_of(command.request) if not field.option.later):
+    for option in (field.option for field in fields_of(command.request)):
         value = (option.metavar or "").replace("|", "\\|")
         yield f"`{' '.join([', '.join(option.words), value]).strip()}`", option.help.replace("|", "\\|")
 
@@ -184,7 +184,7 @@ def options_by_word() -> Iterator[tuple[str, str]]:
     """Each option with the commands that know it."""
     known: dict[str, list[str]] = {}
     for command in COMMANDS:
-        for option in (field.option for field in fields_of(command.request) if not field.option.later):
+        for option in (field.option for field in fields_of(command.request)):
             for word in option.words:
                 known.setdefault(word, []).append(command.name)
     for word in sorted(known, key=str.lower):

@@ -11,10 +11,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.modes.study import state_of
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.steady_motion import Looked
+from heuncli.oscillations.study import state_of
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up

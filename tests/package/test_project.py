@@ -43,6 +43,16 @@ def test_nothing_is_needed_at_run_time_that_only_builds() -> None:
     assert not [need for need in PROJECT["project"]["dependencies"] if re.match("(?i)cython|setuptools", need)]
 
 
+def test_what_is_no_module_is_handed_out_too() -> None:
+    """Pages, their script and style, starters: every file of the package falls under a pattern of its data."""
+    patterns = PROJECT["tool"]["setuptools"]["package-data"]["heuncli"]
+    package = ROOT / "heuncli"
+    handed = {path for pattern in patterns for path in package.glob(pattern)}
+    built = {".py", ".pyc", ".so", ".pyd", ".c", ".pxd"}
+    assert not {path for path in package.rglob("*") if path.is_file() and path.suffix not in built} - handed
+    assert not [pattern for pattern in patterns if not any(package.glob(pattern))]
+
+
 def test_the_readme_has_one_command_to_run_and_one_to_test() -> None:
     lines = (ROOT / "README.md").read_text().splitlines()
     runs = [line for line in lines if re.match(r"pip install .*&& heun run ", line)]

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.commands.balance.asked import BalanceOptions
-from heuncli.commands.balance.results import BalanceResults, OrderRow
-from heuncli.commands.balance.study import balance
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.results import BalanceResults, OrderRow
+from heuncli.balancing.study import balance
 from heuncli.results import Array
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from heuncli.balancing.study import balance
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
@@ -11,8 +12,8 @@ from heuncli.cli.target import format_of
 from heuncli.commands.balance import page as report
 from heuncli.commands.balance.options import options
 from heuncli.commands.balance.request import BalanceRequest
-from heuncli.commands.balance.study import balance
 from heuncli.report.export import dump
+from heuncli.report.table_units import Units
 from heuncli.spec.load import load
 
 
@@ -27,9 +28,10 @@ def main(request: BalanceRequest) -> int:
         require_other_file(request.save, [request.spec], "--save")
     found = balance(spec, options(request, spec))
     if drawn is not None and request.save is not None:
-        from heuncli.commands.balance.picture import picture
+        from heuncli.drawing.layout import laid_out
+        from heuncli.pictures.orders import Balanced, orders
 
-        save(as_file(picture(found), drawn), request.save)
+        save(as_file(laid_out(orders([Balanced("", found)], Units())), drawn), request.save)
     if form == "json":
         text = dump(report.block(found))
     else:

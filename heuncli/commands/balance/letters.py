@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from heuncli.commands.balance.results import BalanceResults
+from heuncli.balancing.results import BalanceResults
 
 LETTER = {"force": "F", "moment": "M", "torque": "T"}
 SEVERAL = "+"

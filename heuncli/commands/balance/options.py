@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.balancing.asked import AskedWeight, AskedWheel, BalanceOptions
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import choice
-from heuncli.commands.balance.asked import AskedWeight, AskedWheel, BalanceOptions
 from heuncli.commands.balance.request import BalanceRequest
 from heuncli.errors import Finding, Problem
 from heuncli.expressions.grammar import Scope

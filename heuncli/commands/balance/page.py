@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.balancing.results import BalanceResults, Counterbalance, OrderRow, OverCycle, Period
+from heuncli.balancing.words import cycle_of, place_of, unit_of
 from heuncli.commands.balance.letters import draw
 from heuncli.commands.balance.remedies_page import remedies
-from heuncli.commands.balance.results import BalanceResults, Counterbalance, OrderRow, OverCycle, Period
 from heuncli.records import replace
 from heuncli.report.digits import style, trim
 from heuncli.report.export import FORMAT
@@ -20,10 +21,6 @@ from heuncli.results import Array, Block
 from heuncli.tolerances import WRITTEN
 from heuncli.version import VERSION
 
-UNITS = {"force": "N", "moment": "N·m", "torque": "N·m", "load": "N·m"}
-BY_RATE = {"force": "kg·m", "moment": "kg·m²", "torque": "kg·m²", "load": "N·m"}  # of 1 rad/s, where no rate is known
-RPM = 30.0 / math.pi
-AT_ONE = "at 1 rad/s: by the square of the rate, in kg·m"
 LETTERS = ("x", "y", "z")
 FORCE = "FORCE  ON the foundation, world axes; order k is amplitude · cos(kφ - phase)"
 MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: what the two make of it in its phase"
@@ -48,32 +45,6 @@ def heading(found: BalanceResults) -> list[tuple[str, str]]:
         *((name, found.words[name]) for name in ("force", "moment")),
         *(("", note) for note in found.notes),
     ]
-
-
-def cycle_of(found: BalanceResults) -> str:
-    """The cycle in words."""
-    if found.period is not None:
-        own = found.period
-        back = f"the period before differs by {own.off:.1g} of the largest"
-        return f"the last {own.seconds:.6g} s of the motion, {found.samples} instants; order k is k/T; {back}"
-    turns = "one turn" if found.turns == 1 else "two turns"
-    rate = (
-        f"at {found.rate:.6g} rad/s ({found.rate * RPM:.6g} rpm)"
-        if found.rate is not None
-        else "at 1 rad/s: by the square of the rate, in kg·m"
-    )
-    return f"{turns} of {found.coordinate} {rate}, {found.samples} angles"
-
-
-def unit_of(found: BalanceResults, quantity: str) -> str:
-    """The unit in which a quantity's amplitudes are told."""
-    return (UNITS if found.rate is not None else BY_RATE)[quantity]
-
-
-def place_of(found: BalanceResults) -> str:
-    """The point that moments are taken about, in words."""
-    x, y, z = (f"{value:.6g}" for value in found.about + 0.0)
-    return f"{found.place or 'O' if found.place or not found.about.any() else 'the point'} = ({x}, {y}, {z}) m"
 
 
 def write(found: BalanceResults) -> str:

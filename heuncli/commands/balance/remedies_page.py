@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from heuncli.commands.balance.results import BalanceResults, Counterbalance, Flywheel, OverCycle
+from heuncli.balancing.results import BalanceResults, Counterbalance, Flywheel, OverCycle
 from heuncli.report.digits import OPEN, style, trim
 from heuncli.report.text_table import TextColumn, TextTable
 from heuncli.results import Array

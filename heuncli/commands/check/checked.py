@@ -2,49 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from types import MappingProxyType
-from typing import Any
-
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
+from heuncli.telling.outcomes import Outcome
 
 FAILED = 1
-NONE: Mapping[str, Any] = MappingProxyType({})
-EXPECTED, KEPT = "expect", "golden"
-
-
-class Outcome(NamedTuple):
-    """One comparison: of what and when, expected, found and allowed in words, and if it fails why.
-
-    kind: with what the spec expects, or with what was kept; case: the load case; block: the same for JSON; warned: a
-    thing that is told and does not fail; skipped: nothing was compared.
-    """
-
-    kind: str
-    of: str
-    failure: str | None
-    line: int = 1
-    column: int = 1
-    case: str = ""
-    when: str = ""
-    expected: str = ""
-    found: str = ""
-    allowed: str = ""
-    block: Mapping[str, Any] = NONE
-    warned: bool = False
-    skipped: bool = False
-
-    @property
-    def passed(self) -> bool:
-        """Whether it holds."""
-        return self.failure is None or self.warned
-
-    @property
-    def name(self) -> str:
-        """The case, what it is of, and when, in one line."""
-        case = f"{self.case}: " if self.case else ""
-        return f"{case}{self.of} {self.when}".strip()
 
 
 class Golden(NamedTuple):

@@ -8,28 +8,23 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from itertools import starmap
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError, contained, lines_of
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.solving import warning_lines
 from heuncli.commands.check import goldens
-from heuncli.commands.check.checked import EXPECTED, Checked, Outcome
+from heuncli.commands.check.checked import Checked
 from heuncli.commands.check.folders import Found
 from heuncli.commands.check.kept_outcomes import NO_FILE, kept_outcomes
 from heuncli.commands.check.request import CheckRequest
 from heuncli.errors import Finding, HeunError, SpecError
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
-from heuncli.report.digits import OPEN
-from heuncli.results import Array
 from heuncli.spec.load import load_with_cases
 from heuncli.spec.models import Expect, Spec
 from heuncli.spec.reading import read_bytes
-from heuncli.study.ask.expectations import Case, compare
+from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
@@ -37,6 +32,7 @@ from heuncli.study.model.selection import EVERYTHING, Selection, asked_by
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
 from heuncli.telling.kept import ANOTHER, MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
+from heuncli.telling.outcomes import EXPECTED, Outcome, outcome_of
 from heuncli.telling.selection import told_by_default
 from heuncli.version import VERSION
 
@@ -159,58 +155,3 @@ def _even_at(old: KeptFile | None, case: str) -> Sequence[float]:
 
 def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
-
-
-def outcome_of(case: Case, path: str, of: str = "") -> Outcome:
-    """An expectation's comparison as plain values; of: the load case."""
-    block = {
-        **({"case": of} if of else {}),
-        "file": path,
-        "line": case.location.line,
-        "of": case.of,
-        "when": case.when,
-        **_wanted(case),
-    }
-    block |= {"passed": case.passed, "message": case.failure or ""}
-    bounded = case.below is not None or case.above is not None
-    return Outcome(
-        EXPECTED, case.of, case.failure, case.location.line, case.location.column, case=of, when=case.when,
-        expected=_expected(case), found=_text(case.found), allowed="" if bounded else f"{case.tolerance:.3g}",
-        block=_plain(block),
-    )  # fmt: skip
-
-
-def _plain(value: Any) -> Any:
-    """Without arrays, which are more to send."""
-    if isinstance(value, dict):
-        return {key: _plain(member) for key, member in value.items()}
-    if isinstance(value, np.ndarray):
-        return _plain(value.tolist())
-    if isinstance(value, (list, tuple)):
-        return [_plain(member) for member in value]
-    return value
-
-
-def _wanted(case: Case) -> dict[str, Any]:
-    """What was expected and found; of bounds the extreme that decides, with its instant and place."""
-    if case.below is None and case.above is None:
-        told = {"expected": case.expected, "found": case.found, "tolerance": case.tolerance}
-        return told | (case.worst_point if case.curve is not None else {})
-    bounds = {"below": case.below, "above": case.above}
-    block: dict[str, Any] = {key: bound for key, bound in bounds.items() if bound is not None}
-    block |= {"found": case.found, "at": case.extreme.at if case.extreme is not None else None}
-    return block | (case.extreme.place._asdict() if case.extreme is not None and case.extreme.place is not None else {})
-
-
-def _expected(case: Case) -> str:
-    bounds = [f"{word} {bound:.9g}" for word, bound in (("above", case.above), ("below", case.below))
-              if bound is not None]  # fmt: skip
-    return ", ".join(bounds) or _text(case.expected)
-
-
-def _text(values: Array | None) -> str:
-    if values is None:
-        return ""
-    texts = [OPEN if np.isnan(value) else f"{value:.9g}" for value in np.ravel(values)[:6]]
-    more = ", ..." if values.size > len(texts) else ""
-    return texts[0] if values.ndim == 0 else f"[{', '.join(texts)}{more}]"

@@ -7,8 +7,9 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from pathlib import PurePath
 
-from heuncli.commands.check.checked import Checked, Outcome
+from heuncli.commands.check.checked import Checked
 from heuncli.commands.check.told import words
+from heuncli.telling.outcomes import Outcome
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.commands.check.checked import KEPT, Golden, Outcome
+from heuncli.commands.check.checked import Golden
 from heuncli.commands.check.request import CheckRequest
 from heuncli.telling.change_words import number_text, why
 from heuncli.telling.changes import EXTRA, MISSING, Change, changes
 from heuncli.telling.kept import KeptFile, KeptRun, text_of
+from heuncli.telling.outcomes import KEPT, Outcome
 from heuncli.version import VERSION
 
 NO_FILE = "no golden file: --update writes it"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from heuncli.commands.check.checked import KEPT, Checked, Outcome
+from heuncli.commands.check.checked import Checked
 from heuncli.commands.check.folders import PassedBy
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
@@ -13,6 +13,7 @@ from heuncli.report.export import dump
 from heuncli.report.plurals import count
 from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
 from heuncli.report.workflow_lines import Annotation, lines
+from heuncli.telling.outcomes import KEPT, Outcome
 
 HEADS = ("file", "of", "at", "expected", "found", "why it fails")
 CHANGED = ("file", "of", "at", "kept", "found", "what is written anew")

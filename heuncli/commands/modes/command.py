@@ -9,8 +9,8 @@ from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.modes import page as report
 from heuncli.commands.modes.request import ModesRequest
-from heuncli.commands.modes.study import modes
 from heuncli.commands.modes.without import named, without
+from heuncli.oscillations.study import modes
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import PurePath
+from pathlib import Path, PurePath
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
+from heuncli.commands.plot.kinds import KINDS
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
+from heuncli.nearest import nearest
 
 SPECS, SWEEPS = (".yaml", ".yml"), (".sqlite", ".csv", ".db")
 USAGE = "such as heun plot engine.yaml joints.main.force, or heun plot engine.yaml scene"
-KINDS = ("scene", "modes", "balance", "polar")
+OF_PATHS, OF_SWEEPS = ("history", "sections"), "sweep"  # kinds that no word names
+NAMED = tuple(kind for kind in KINDS if kind not in (*OF_PATHS, OF_SWEEPS))
 
 
 class PlotAsked(NamedTuple):
@@ -25,26 +28,50 @@ class PlotAsked(NamedTuple):
 
 def asked(words: Sequence[str]) -> PlotAsked:
     """What the words mean. Raises UsageError."""
-    files = [word for word in words if _is_file(word)]
-    rest = [word for word in words if not _is_file(word)]
+    files = [word for k, word in enumerate(words) if _is_file(word, first=k == 0)]
+    rest = [word for word in words if word not in files]
     if not files:
-        raise UsageError(Problem("bad-option", "heun plot: no spec is named", hint=USAGE))
-    kinds = [word for word in rest if word in KINDS]
-    if PurePath(files[0]).suffix.lower() in SWEEPS:
-        return PlotAsked(files, "sweep", rest)
+        raise _refused("no spec is named", USAGE)
+    if not all(words):
+        raise _refused("an empty word", USAGE)
+    swept = [file for file in files if PurePath(file).suffix.lower() in SWEEPS]
+    if swept:
+        if len(swept) < len(files):
+            raise _refused(f"{', '.join(files)}: specs and sweeps in one picture", "call it once for each")
+        return PlotAsked(files, OF_SWEEPS, rest)
     if not rest:
-        raise UsageError(Problem("bad-option", "heun plot: what is to be drawn is not said", hint=USAGE))
+        raise _refused("what is to be drawn is not said", USAGE)
+    kinds = [word for word in rest if word in NAMED]
     if len(kinds) > 1 or (kinds and kinds[0] != rest[0]):
-        message = f"heun plot: {', '.join(rest)}: one kind of picture at a time"
-        raise UsageError(Problem("bad-option", message, hint="call it once for each"))
+        raise _refused(f"{', '.join(rest)}: one kind of picture at a time", "call it once for each")
     return PlotAsked(files, kinds[0] if kinds else _of_paths(rest), rest[len(kinds) :])
 
 
 def _of_paths(paths: Sequence[str]) -> str:
-    """Whether paths are of whole sections, whose diagrams are drawn, or of numbers over time."""
+    """Whether paths are of whole sections, whose diagrams are drawn, or of numbers over time. Raises UsageError."""
     whole = [path for path in paths if path.startswith("sections.") and path.count(".") == 1]
-    return "sections" if whole and len(whole) == len(paths) else "history"
+    if whole and len(whole) < len(paths):
+        other = next(path for path in paths if path not in whole)
+        message = f"{whole[0]} is a diagram along a bar, {other} a number over time: one kind of picture at a time"
+        raise _refused(message, f"call it once for each; over time {whole[0]}.N, say")
+    meant = nearest(paths[0], NAMED) if "." not in paths[0] else None
+    if meant is not None:
+        raise _refused(f"'{paths[0]}' is no kind of picture", f"did you mean {meant}?")
+    return "sections" if whole else "history"
 
 
-def _is_file(word: str) -> bool:
-    return word == STDOUT or PurePath(word).suffix.lower() in (*SPECS, *SWEEPS)
+def _is_file(word: str, *, first: bool) -> bool:
+    """Whether a word names a file: by how it ends; the first one also because it is there."""
+    return word == STDOUT or PurePath(word).suffix.lower() in (*SPECS, *SWEEPS) or (first and _is_there(word))
+
+
+def _is_there(word: str) -> bool:
+    """Whether there is a file or folder of that name; a word that can be none is none."""
+    try:
+        return Path(word).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _refused(message: str, hint: str) -> UsageError:
+    return UsageError(Problem("bad-option", f"heun plot: {message}", hint=hint))

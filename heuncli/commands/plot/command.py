@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from heuncli.cli.figure_letters import in_letters
+from heuncli.cli.figure_letters import in_letters, require_width
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, save
 from heuncli.cli.picture_files import as_file, picture_form
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import asked
+from heuncli.commands.plot.kinds import require_heeded
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.drawing.figure import Figure
 
@@ -17,8 +18,10 @@ from heuncli.drawing.figure import Figure
 def main(request: PlotRequest) -> int:
     """Run the command; returns the exit code."""
     found = asked(request.words)
+    require_heeded(found.what, request)
     require_other_file(request.output, found.files)
     form = picture_form(request.output, "-o") if request.output is not None else None
+    require_width(request.width)
     units(request.units)  # said before the work
     draw = import_module(f"heuncli.commands.plot.{found.what}").draw
     figure: Figure = draw(found, request)

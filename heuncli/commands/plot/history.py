@@ -2,16 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
+from heuncli.cli import measure
+from heuncli.cli.solving import all_or_errors
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solved
+from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.histories import history
+from heuncli.pictures.measurements import Measured, asked_points, measured
+from heuncli.results_schema import BLOWS, EVENTS
+from heuncli.spec.models import Spec
+from heuncli.study.ask.measure import MeasureRequest
+from heuncli.variants.stated import unit_of
 
 
 def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     """The figure. Raises UsageError, SpecError and what solving raises."""
-    over = [] if request.x is None else [request.x]
-    sources = solved(asked.files, [*asked.paths, *over], request)
-    return history(sources, asked.paths, units(request.units), request.x)
+    paths = [*asked.paths, *([] if request.x is None else [request.x])]
+    specs = specs_of(asked.files, request)
+    for _, spec in specs:
+        measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
+    points = _points(asked, request, specs[0][1])
+    needed = [*paths, BLOWS, EVENTS]  # these are marked
+    sources = [solution(name, spec, needed, request) for name, spec in specs]
+    return history(sources, asked.paths, units(request.units), request.x, points)
+
+
+def _points(asked: PlotAsked, request: PlotRequest, spec: Spec) -> list[Measured]:
+    """What was measured. Raises SpecError with all that is wrong with any of the files."""
+    x_unit = "s" if request.x is None else unit_of(request.x, spec)
+    kinds = [unit_of(path, spec) for path in asked.paths]
+    return all_or_errors([partial(_measured, words, x_unit, kinds) for words in request.measured])
+
+
+def _measured(words: str, x_unit: str, kinds: Sequence[str]) -> Measured:
+    return measured(asked_points(words), x_unit, kinds)

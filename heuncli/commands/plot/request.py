@@ -25,25 +25,29 @@ class PlotRequest(NamedTuple):
         tuple[str, ...],
         Option(
             (),
-            "Specs, or the store or CSV of a sweep; then paths such as joints.main.force, sections.NAME, polar "
-            "joints.NAME, scene, modes or balance.",
+            "Specs, then one of: paths, such as joints.main.force (over time); sections.NAME (along the bar); "
+            "polar joints.NAME; scene; modes; balance. Or the store or CSV of a sweep.",
             "SPEC... WHAT...",
         ),
     ]
     output: Annotated[
         str | None,
-        Option(("--output", "-o"), "Draw it there: x.svg; .png and .pdf by matplotlib. Default: in letters.", "FILE"),
+        Option(
+            ("--output", "-o"),
+            "Draw it there: x.svg; .png and .pdf by matplotlib. Default: on the terminal.",
+            "FILE",
+        ),
     ] = None
     x: Annotated[
-        str | None, Option(("--x",), "Over this number instead of time, as coordinates.shaft.angle.", "PATH")
+        str | None, Option(("--x",), "Over this number in place of time, such as coordinates.shaft.angle.", "PATH")
     ] = None
     measured: Annotated[
         tuple[str, ...],
-        Option(("--with",), "Points of a CSV over it: its columns of x and y. May be repeated.", "FILE:X:Y"),
+        Option(("--with",), "Measured points over it: a CSV's columns of x and y. May be repeated.", "FILE:X:Y"),
     ] = ()
     at: Annotated[str | None, Option(("--at",), "At these instants: of diagrams and scenes.", "T,...")] = None
     axes: Annotated[
-        str | None, Option(("--axes",), "Polar diagrams in the axes of the one or the other body.", "world|from|to")
+        str | None, Option(("--axes",), "Joint loads in the axes of the one or the other body.", "world|from|to")
     ] = None
     view: Annotated[str | None, VIEW] = None
     tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (

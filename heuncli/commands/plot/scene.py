@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import instants
 from heuncli.cli.units import units
 from heuncli.cli.views import require_view
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solved
+from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Problem
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.scenes import scene
 from heuncli.pictures.traces import CENTER
 from heuncli.results import Array
+from heuncli.study.ask.measure import MeasureRequest
 
 REPORTS = ("bodies", "joints", "impulses")  # of the results: where all of it stands, and what acts
 
@@ -25,7 +27,11 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     """The figure, a panel a run. Raises UsageError, SpecError and what solving raises."""
     require_view(request.view)
     names = [word.removeprefix("points.").removeprefix("bodies.") for word in asked.paths]
-    sources = solved(asked.files, [_path(name) for name in names], request, REPORTS)
+    paths = [_path(name) for name in names]
+    specs = specs_of(asked.files, request)
+    for _, spec in specs:
+        measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
+    sources = [solution(name, spec, [*paths, *REPORTS], request) for name, spec in specs]
     shown = units(request.units)
     figures = [scene(source, shown, _at(source, request), request.view, names) for source in sources]
     if len(figures) == 1:

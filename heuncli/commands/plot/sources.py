@@ -6,9 +6,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
 from heuncli.cli import alarm, measure
+from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.solving import choice, overrides, solver_options, warn
+from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
+from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
+from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.pictures.courses import Pictured
 from heuncli.records import replace
@@ -21,18 +24,19 @@ from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
 
 
-def solved(
-    files: Sequence[str], paths: Sequence[str], request: PlotRequest, blocks: Sequence[str] = ()
-) -> list[Pictured]:
-    """The runs, in the order of the files and of their cases; what they are warned of is told.
-
-    blocks: of the results, that are needed altogether beside what the paths need.
-    """
-    specs = [pair for file in files for pair in _specs(file, request)]
+def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
+    """The runs, in the order of the files and of their cases; what they are warned of is told."""
+    specs = specs_of(files, request)
     asked = [MeasureRequest("", path) for path in paths]
     for _, spec in specs:
         measure.check(asked, spec, "heun plot")
-    return [_solved(name if len(specs) > 1 else "", spec, [*paths, *blocks], request) for name, spec in specs]
+    return [solution(name, spec, paths, request) for name, spec in specs]
+
+
+def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
+    """The specs, in the order of the files and of their cases, each with its name; of one alone that is empty."""
+    specs = [pair for file in files for pair in _specs(file, request)]
+    return specs if len(specs) > 1 else [("", spec) for _, spec in specs]
 
 
 def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
@@ -41,7 +45,9 @@ def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     if request.case is None:
         yield name, load(file, overrides=given, checking=False)
     elif request.case == ALL_CASES:
-        for case, spec in load_with_cases(file, given, checking=False)[1].items():
+        cases = load_with_cases(file, given, checking=False)[1]
+        require_cases(cases)
+        for case, spec in cases.items():
             yield f"{name} {case}", spec
     else:
         for case in request.case.split(","):
@@ -49,8 +55,15 @@ def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     require_other_file(request.output, [file])
 
 
-def _solved(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
-    """One of them solved."""
+def require_no_paths(asked: PlotAsked) -> None:
+    """Raise UsageError where a picture of the whole scene is asked for of some paths."""
+    if asked.paths:
+        message = f"heun plot {asked.what} {' '.join(asked.paths)}: {asked.what} is of the whole scene"
+        raise UsageError(Problem("bad-option", message, hint=f"heun plot {asked.files[0]} {asked.what}"))
+
+
+def solution(name: str, spec: Spec, paths: Sequence[str], request: PlotRequest) -> Pictured:
+    """A spec solved for what some paths need; what it is warned of is told."""
     what = asked_by(paths, spec)
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
     options = replace(

@@ -6,55 +6,29 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from heuncli.cli.entry import UsageError, worst
+from heuncli.cli.entry import worst
 from heuncli.cli.output import emit
+from heuncli.cli.solving import require_cases
 from heuncli.cli.units import TABLES, say_what_stays
 from heuncli.commands.run.scene import RunTask, leave, solved
-from heuncli.errors import Problem
 from heuncli.foreign_text import shown
-from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, markdown, plain
 from heuncli.spec.models import Spec
+from heuncli.telling.envelopes import Enveloped, envelope
 from heuncli.telling.keep import keep
-from heuncli.telling.kept import BEYOND, KeptNumber, KeptRun
+from heuncli.telling.kept import KeptRun
 
 HEADS = ("of", "unit", "least", "at [s]", "case", "greatest", "at [s]", "case")
 DIGITS = 6
 STRUCK = "without blows: these stand in the tables of each case"
 
 
-class Bound(NamedTuple):
-    """The lowest or highest of all cases: its value, its instant where it is not throughout, and the case."""
-
-    value: float
-    at: float | None
-    case: str
-
-
-class Enveloped(NamedTuple):
-    """One number over all cases, in SI; unclear: by case what stands in the place of an extreme there."""
-
-    path: str
-    unit: str
-    least: Bound | None
-    greatest: Bound | None
-    unclear: Mapping[str, str]
-
-    @property
-    def lacks(self) -> str:
-        """In which cases it is not known, and why."""
-        words = dict.fromkeys(self.unclear.values())
-        return "; ".join(f"{word} in {', '.join(c for c, w in self.unclear.items() if w == word)}" for word in words)
-
-
 def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     """Solve every case and tell of them; returns the exit code."""
-    if not cases:
-        hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
-        raise UsageError(Problem("unknown-case", "--case all: the spec has no load cases", hint=hint))
+    require_cases(cases)
     told: dict[str, str] = {}
     runs: dict[str, KeptRun] = {}
     codes = [0]
@@ -91,33 +65,6 @@ def _csv(told: Mapping[str, str]) -> Iterator[str]:
         head, *lines = text.splitlines(keepends=True)
         yield from [f"case,{head}"] if not number else []
         yield from (f"{name},{line}" for line in lines)
-
-
-def envelope(runs: Mapping[str, KeptRun]) -> list[Enveloped]:
-    """Every number of the cases: the lowest and the highest of all, and the cases of which that is not known."""
-    paths = dict.fromkeys(path for run in runs.values() for path in run.numbers)
-    return [_enveloped(path, {name: run.numbers.get(path) for name, run in runs.items()}) for path in paths]
-
-
-def _enveloped(path: str, numbers: Mapping[str, KeptNumber | None]) -> Enveloped:
-    least: Bound | None = None
-    greatest: Bound | None = None
-    unclear: dict[str, str] = {}
-    unit = next(number.unit for number in numbers.values() if number is not None)
-    for case, number in numbers.items():
-        if number is None:
-            unclear[case] = "missing"
-            continue
-        values = number.values
-        low, high = values.get("least"), values.get("greatest")
-        words = [value for value in (low, high, *values.values()) if isinstance(value, str) and value != BEYOND]
-        if words:
-            unclear[case] = words[0]
-        if isinstance(low, float) and (least is None or low < least.value):
-            least = Bound(low, number.least_at, case)
-        if isinstance(high, float) and (greatest is None or high > greatest.value):
-            greatest = Bound(high, number.greatest_at, case)
-    return Enveloped(path, unit, least, greatest, unclear)
 
 
 def _blocks(runs: Mapping[str, KeptRun]) -> Iterator[tuple[str, dict[str, Any]]]:

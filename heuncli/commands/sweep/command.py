@@ -16,11 +16,9 @@ from heuncli.commands.sweep.checks import problems_of, warnings_of
 from heuncli.commands.sweep.drawn import drawn
 from heuncli.commands.sweep.given import GivenAxis, of_word
 from heuncli.commands.sweep.request import FORMATS, SweepRequest
-from heuncli.commands.sweep.rows import SweepHead, SweptMeasure
 from heuncli.commands.sweep.running import Sweep, run
 from heuncli.commands.sweep.shards import shard_of
 from heuncli.commands.sweep.showing import show
-from heuncli.commands.sweep.store.store import Store
 from heuncli.commands.sweep.table import axes_in
 from heuncli.commands.sweep.telling.told import Telling, require_tellable
 from heuncli.errors import Problem, SpecError
@@ -28,6 +26,8 @@ from heuncli.records import replace
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import text_in
 from heuncli.study.model.memory_estimate import Room
+from heuncli.sweeps.rows import SweepHead, SweptMeasure
+from heuncli.sweeps.store.store import Store
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys

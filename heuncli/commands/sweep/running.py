@@ -17,15 +17,15 @@ from heuncli.cli.output import say
 from heuncli.cli.progress import Tell, progress
 from heuncli.cli.units import say_what_stays
 from heuncli.commands.sweep.request import SweepRequest
-from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.store.heads import texts_of_head
-from heuncli.commands.sweep.store.store import Store, StoredRows
 from heuncli.commands.sweep.telling.noticed import Noticed, noticed_in, say_noticed
 from heuncli.commands.sweep.telling.told import Telling, tell
 from heuncli.commands.sweep.workers import answers_of
 from heuncli.errors import OutputError, SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.study.ask.measure import NotOneNumber
+from heuncli.sweeps.rows import SweepHead
+from heuncli.sweeps.store.heads import texts_of_head
+from heuncli.sweeps.store.store import Store, StoredRows
 from heuncli.variants.asking import Answer, Asker
 from heuncli.variants.keys import VariantKeys
 

@@ -15,12 +15,12 @@ from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.columns import rows_of
+from heuncli.spec.headings import heading
 from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 from heuncli.variants.axes import ParameterAxis, figure_of
 
 LARGEST = 1_000_000_000  # bytes
 CODE = "variants-table"
-HEAD = re.compile(r"(?P<name>[^\[\]/]*?)\s*(?:\[(?P<in>[^\[\]]*)\]|/(?P<over>.*))?\Z", re.DOTALL)
 DECIMAL_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?(?:\s*[^\d\s,.].*)?)\Z")
 MARKS = (";", "\t", ",")
 FORM = "a column a parameter, its name in the first row: n [rpm],L [mm]"
@@ -82,9 +82,7 @@ def _named(file: str, n: int, heads: Sequence[Cell], problems: list[Problem]) ->
     found: list[tuple[str, str]] = []
     for cell in heads:
         place = SourceLocation(file, n, cell.column)
-        parts = HEAD.match(cell.text)
-        name = parts["name"].strip() if parts is not None else ""
-        unit = ((parts["in"] or parts["over"] or "") if parts is not None else "").strip()
+        name, unit = heading(cell.text)
         if not name or figure_of(name) is not None:
             problems.append(Problem(CODE, f"'{cell.text}' is not the name of a parameter", place, FORM))
         elif any(name == other for other, _ in found):

@@ -17,9 +17,9 @@ from itertools import islice
 
 from heuncli.cli import alarm, jobs
 from heuncli.cli.entry import contained
-from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import HeunError
 from heuncli.named_tuples import NamedTuple
+from heuncli.sweeps.rows import WORKER_DIED
 from heuncli.variants.asking import Answer, Asker, failed
 from heuncli.variants.plans import Plan
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from heuncli.commands.balance.asked import BalanceOptions
-from heuncli.commands.balance.study import balance
-from heuncli.commands.balance.verdicts import verdict_of
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.study import balance
+from heuncli.balancing.verdicts import verdict_of
 from heuncli.errors import SolveError
 from heuncli.spec.load import load
 from tests.honesty.boundaries.part import Part, Row

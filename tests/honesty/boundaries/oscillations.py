@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.commands.modes.study import modes
 from heuncli.errors import HeunError
 from heuncli.linearisation.indifference import Indifference, Loose, indifference
 from heuncli.linearisation.linearise import linearised
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.reduced_equations import ReducedEquations
 from heuncli.linearisation.steady_motion import off_balance
+from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from tests.honesty.boundaries.part import Part, Row

@@ -27,8 +27,8 @@ from heuncli.commands.sweep.cluster.door import PATIENCE, ClusterGone, connected
 from heuncli.commands.sweep.cluster.lots import WORKERS, Lot, Lots
 from heuncli.commands.sweep.cluster.members import ClusterTask, Member, Members, named
 from heuncli.commands.sweep.cluster.worker import PartAnswered, Variant, in_words
-from heuncli.commands.sweep.rows import WORKER_DIED
 from heuncli.errors import Problem
+from heuncli.sweeps.rows import WORKER_DIED
 from heuncli.variants.asking import Answer, Recipe
 from heuncli.variants.files import with_files, with_more_files
 from heuncli.variants.plans import Plan

@@ -6,9 +6,9 @@ import csv
 import io
 from collections.abc import Iterable, Iterator
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.telling.columns import Cell, columns_of
 from heuncli.foreign_text import shown
+from heuncli.sweeps.columns import Cell, columns_of
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 
 def csv_pieces(head: SweepHead, rows: Iterable[SweptRow]) -> Iterator[str]:

@@ -6,12 +6,12 @@ import json
 from collections.abc import Iterable, Iterator
 from typing import Any
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.telling.columns import ParameterColumn, SweepColumns, columns_of, finite, why
 from heuncli.commands.sweep.telling.gathered import GatheredRows
 from heuncli.commands.sweep.telling.statistics import MeasureStatistics, statistics_of
 from heuncli.foreign_text import shown
 from heuncli.report.export import FORMAT
+from heuncli.sweeps.columns import ParameterColumn, SweepColumns, columns_of, finite, why
+from heuncli.sweeps.rows import SweepHead, SweptRow
 from heuncli.variants.asking import Measured
 from heuncli.variants.indices import SobolIndices
 from heuncli.variants.sampling import SURE

@@ -13,9 +13,9 @@ from collections.abc import Iterable, Iterator
 from itertools import islice
 from typing import Any
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.telling.columns import SweepColumns, columns_of
 from heuncli.errors import Problem, SpecError
+from heuncli.sweeps.columns import SweepColumns, columns_of
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 GROUP = 50_000  # rows that are written together
 INSTALL = 'pip install "heuncli[parquet]"; or -o sweep.csv, which needs nothing'

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from heuncli.commands.sweep.rows import SweptRow
 from heuncli.results import Array
+from heuncli.sweeps.rows import SweptRow
 
 
 class GatheredRows:

@@ -6,10 +6,10 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import islice
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.commands.sweep.telling.extremes import BestAndWorst, extremes
 from heuncli.commands.sweep.telling.gathered import GatheredRows
 from heuncli.named_tuples import NamedTuple
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 MOST_ROWS = 60  # that are shown without --all
 ENDS = 10  # rows at the beginning and at the end of more

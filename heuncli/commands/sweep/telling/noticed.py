@@ -7,8 +7,8 @@ from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.cli.output import say
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.named_tuples import NamedTuple
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 FIGURES = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 MOST = 20  # kinds of warnings that are told

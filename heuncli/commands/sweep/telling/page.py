@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.commands.sweep.telling.kept_rows import kept
 from heuncli.commands.sweep.telling.shown_rows import table_of_rows
 from heuncli.commands.sweep.telling.statistics import statistics_of
@@ -13,6 +12,7 @@ from heuncli.commands.sweep.telling.summary import summary
 from heuncli.report.sparkline import letters
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextTable
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 
 def tables(

@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
-from heuncli.commands.sweep.telling.columns import WORDS, ParameterColumn, parameters_of
 from heuncli.commands.sweep.telling.extremes import BestAndWorst
 from heuncli.commands.sweep.telling.kept_rows import KeptRows
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, largest, style, trim
 from heuncli.report.plurals import count
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.sweeps.columns import WORDS, ParameterColumn, parameters_of
+from heuncli.sweeps.rows import SweepHead, SweptRow
 from heuncli.variants.asking import Measured
 
 LEAST, GREATEST = "least", "greatest"

@@ -11,10 +11,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.commands.sweep.rows import SweepHead
 from heuncli.commands.sweep.telling.gathered import GatheredRows
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
+from heuncli.sweeps.rows import SweepHead
 from heuncli.variants.indices import SobolIndices, sobol_indices
 from heuncli.variants.plans import Plan
 from heuncli.variants.sampling import Sampled, sampled

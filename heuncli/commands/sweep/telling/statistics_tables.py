@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.telling.columns import parameters_of
 from heuncli.commands.sweep.telling.shown_rows import number_text, parameter_text, variants
 from heuncli.commands.sweep.telling.statistics import MeasureStatistics
 from heuncli.report.digits import rough
 from heuncli.report.plurals import count
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.sweeps.columns import parameters_of
+from heuncli.sweeps.rows import SweepHead
 from heuncli.variants.axes import Drawn
 from heuncli.variants.sampling import SURE, Estimated
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.sweep.rows import SweepHead
-from heuncli.commands.sweep.telling.columns import ParameterColumn, parameters_of
 from heuncli.commands.sweep.telling.kept_rows import KeptRows
 from heuncli.commands.sweep.telling.shown_rows import number_text, parameter_text, words
 from heuncli.report.digits import largest, trim
@@ -14,6 +12,8 @@ from heuncli.report.sparkline import histogram, sparkline
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import TextColumn, TextTable
 from heuncli.results import Array
+from heuncli.sweeps.columns import ParameterColumn, parameters_of
+from heuncli.sweeps.rows import SweepHead
 from heuncli.variants.plans import Plan
 
 SPARK = 40  # letters of a line

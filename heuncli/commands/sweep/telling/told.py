@@ -8,12 +8,12 @@ from collections.abc import Iterable, Iterator
 from heuncli.cli import files, terminal
 from heuncli.cli.entry import UsageError
 from heuncli.cli.output import emit
-from heuncli.commands.sweep.rows import SweepHead, SweptRow
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, plain
+from heuncli.sweeps.rows import SweepHead, SweptRow
 
 
 class Telling(NamedTuple):

@@ -1,0 +1,165 @@
+"""The motion over a cycle at unit rate: the scene is followed along one of its angles, nothing is integrated.
+
+A drive that turns the angle φ at 1 rad/s takes the place of the scene's own (or is added where one freedom is free):
+    x' = dx/dφ,   x'' = d²x/dφ²       are then velocities and accelerations; at any motion  ẋ = x' ω,  ẍ = x'' ω² + x' ω̇
+Where several drives turn the scene in step it is followed in time as it stands, and the angle's own rate divided out.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.balancing.choice import CyclePlan
+from heuncli.errors import LimitError, Problem, SolveError
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.integration.determined_motion import determined
+from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.integration.run.request import MotionTask
+from heuncli.integration.run.runner import Runner, ready
+from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.records import fields, record, replace
+from heuncli.results import Array
+from heuncli.spec.models import Drive
+from heuncli.study.model.setup import reduced_runner
+from heuncli.tree.prepare import PreparedScene, arranged
+
+LOCAL = 1e-9  # tolerance of a step that is followed: its instants are solved to rounding whatever it is
+SAMPLES, MOST_SAMPLES = 64, 4096
+QUARTER = 4  # the last so many-th part of the orders tells whether there are enough samples
+DRIVE = "cycle"
+
+
+@record
+class FollowedScene:
+    """A scene that turns along its angle, ready to be followed: what the instants of its run mean.
+
+    begin [rad]: the angle at t = 0; rate [rad/s]: at which it turns in the run.
+    """
+
+    scene: PreparedScene
+    runner: Runner
+    begin: float
+    rate: float
+    turns: int
+
+    def at(self, count: int) -> Cycle:
+        """The cycle at equal angles. Raises SolveError where the scene does not go round, or comes round elsewhere."""
+        length = 2.0 * math.pi * self.turns
+        shares = np.arange(count + 1) / count
+        times = shares * length / abs(self.rate)
+        try:
+            run = self.runner.trajectory(MotionTask(times, LOCAL, FOLLOWED, ()))
+        except (SolveError, LimitError) as error:
+            if isinstance(error, LimitError) and error.problems[0].code != "step-limit":
+                raise
+            raise SolveError(self.not_round(error)) from None
+        found = self.runner.recovered(times, run.states)
+        states = at_unit_rate(body_states(self.scene.layout, found), self.rate)
+        require_closed(self.scene, states, self.turns)
+        order = np.arange(count) if self.rate > 0.0 else (-np.arange(count)) % count
+        own = BodyStates(**{name: values[order] for name, values in fields(states).items()})
+        angles = self.begin + length * shares[:-1]
+        return Cycle(self.scene.mechanism, self.turns, angles, own, self.scene.layout.size)
+
+    def not_round(self, error: SolveError | LimitError) -> Problem:
+        """What is told of a scene that cannot be followed over its cycle."""
+        reached = error.reached if isinstance(error, SolveError) else None
+        where = "" if reached is None else f", it ends at {math.degrees(self.begin + self.rate * reached):.6g}°"
+        message = f"the scene does not go round its cycle{where}: it locks there, or passes a dead centre"
+        hint = "--cycle names an angle that turns all the way; heun probe tells what a motion of it comes near to"
+        return Problem("no-cycle", message, hint=hint, about=error.problems[0].about)
+
+
+@record
+class Cycle:
+    """A scene of a size [m] at equal angles (n,) over a cycle, moved at unit rate; behind them as at first."""
+
+    mechanism: Mechanism
+    turns: int
+    angles: Array
+    states: BodyStates
+    size: float
+
+
+def turning(scene: PreparedScene, plan: CyclePlan) -> FollowedScene:
+    """The scene driven along the cycle's angle, loads left out. Raises SolveError where that does not determine it."""
+    driven = arranged(driven_mechanism(scene.mechanism, plan, 1.0), still(scene))
+    rate = plan.rate if plan.in_time and plan.rate is not None else 1.0
+    own, runner = ready(driven)
+    _, runner = reduced_runner(own, runner)
+    require_determined(runner, plan)
+    return FollowedScene(own, runner, plan.begin, rate, plan.turns)
+
+
+def driven_mechanism(mechanism: Mechanism, plan: CyclePlan, rate: float, loaded: bool = False) -> Mechanism:
+    """The mechanism with its angle driven at a rate; of several drives in time all as they stand.
+
+    loaded: with its loads and weight; else it only moves.
+    """
+    joints = mechanism.joints
+    if not plan.in_time:
+        angle = compile_expression(f"{plan.begin!r} + ({rate!r})*t", Scope(in_time=True))
+        drive = Drive(DRIVE, plan.joint, "angle", angle, zero_assembled=True)
+        joints = tuple(replace(j, drive=drive if j.name == plan.joint else None) for j in joints)
+    moved = replace(mechanism, joints=joints, blows=(), conditions=())
+    return moved if loaded else replace(moved, loads=(), gravity=np.zeros(3), points={})
+
+
+def still(scene: PreparedScene) -> Assembly:
+    """The assembled start without its rates: those of the new drive take their place."""
+    start = scene.start
+    none = np.zeros_like(start.velocity)
+    return replace(start, velocity=none, angular_velocity=none)
+
+
+def require_determined(runner: Runner, plan: CyclePlan) -> None:
+    """Raise SolveError where the cycle's angle does not tell where everything is."""
+    layout = runner.moving.layout
+    if determined(runner.moving).is_so:
+        return
+    chosen = runner.moving.workspace.chosen_count(0.0, layout.y0) if layout.rows else 0
+    left = layout.tree_freedoms - chosen
+    if left > 0:
+        also = "another freedom is" if left == 1 else f"{left} other freedoms are"
+        message = f"joints.{plan.joint}: with its angle driven {also} left: how they move is not told by the cycle"
+        hint = "drive them, too, or hold them (a rod on two balls: one `universal`); or --period T, orders of time"
+        raise SolveError(Problem("several-freedoms", message, hint=hint, about=f"joints.{plan.joint}"))
+    message = f"joints.{plan.joint}: its angle does not determine the motion"
+    raise SolveError(Problem("no-cycle", message, hint="--cycle names another angle", about=f"joints.{plan.joint}"))
+
+
+def at_unit_rate(states: BodyStates, rate: float) -> BodyStates:
+    """Velocities and accelerations of a run at a constant rate by the angle."""
+    if rate == 1.0:
+        return states
+    first = {name: getattr(states, name) / rate for name in ("v", "omega", "v_centre")}
+    return replace(states, **first, **{name: getattr(states, name) / rate**2 for name in ("a", "alpha", "a_centre")})
+
+
+def require_closed(scene: PreparedScene, states: BodyStates, turns: int) -> None:
+    """Raise SolveError where a body is elsewhere after the cycle than before it."""
+    size, bodies = scene.layout.size, scene.mechanism.bodies
+    shift = np.abs(states.x[-1] - states.x[0]).max(axis=1) / size
+    turn = np.abs(states.R[-1] - states.R[0]).max(axis=(1, 2))
+    off = np.maximum(shift, turn)
+    worst = int(np.argmax(off))
+    if off[worst] > tolerances.SAME_VALUE:
+        name = bodies[worst].name
+        message = f"bodies.{name}: after {'a turn' if turns == 1 else 'two turns'} it is not back where it was"
+        hint = (
+            "--turns 2, if the scene takes two; --cycle names another angle" if turns == 1 else "--cycle names another"
+        )
+        raise SolveError(Problem("no-cycle", message, hint=hint, about=f"bodies.{name}"))
+
+
+def axis_of(cycle: Cycle, joint_name: str) -> Array | None:
+    """The direction of the cycle's axis, (3,), world axes; None where it turns about no fixed one."""
+    joint = next(j for j in cycle.mechanism.joints if j.name == joint_name)
+    if joint.a == GROUND:
+        return joint.axis
+    along = cycle.states.R[:, joint.a] @ joint.axis
+    return along[0] if np.abs(along - along[0]).max() <= tolerances.PARALLEL else None

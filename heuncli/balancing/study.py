@@ -1,0 +1,93 @@
+"""The balance of a scene over a cycle: mass effects by orders, the weights that lower them, a flywheel."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.balancing.asked import NOTHING_ASKED, BalanceOptions
+from heuncli.balancing.choice import CyclePlan, planned
+from heuncli.balancing.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
+from heuncli.balancing.effects import mass_effects
+from heuncli.balancing.harmonics import tail
+from heuncli.balancing.results import BalanceResults
+from heuncli.balancing.rows import CycleTurning
+from heuncli.balancing.told import is_asked, told
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.spec.models import Spec
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.setup import draw
+from heuncli.tree.prepare import PreparedScene, prepare
+
+GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
+
+
+def balance(spec: Spec, asked: BalanceOptions = NOTHING_ASKED) -> BalanceResults:
+    """The balance of a spec. Raises SpecError, SolveError where it has no cycle."""
+    with placed(spec):
+        return balanced(spec, asked)
+
+
+def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
+    """The balance of a spec. Errors name bodies, joints and sections, but not where these stand in the file."""
+    about = asked.about if asked.about is not None else np.array(spec.foundation.about or (0.0, 0.0, 0.0))
+    if asked.period is not None:
+        from heuncli.balancing.period import over_period  # with all that solves motions
+
+        return over_period(spec, asked.period, asked, about)
+    scene = drawn(spec)
+    plan = planned(scene, asked.cycle, asked.turns, asked.rate)
+    followed = turning(scene, plan)
+    cycle, settled = sampled(followed, about)
+    effects = mass_effects(cycle, about)
+    turns = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
+    found = replace(told(spec, plan.coordinate, turns, effects, about, asked), settled=settled)
+    found = with_loads(found, spec, scene, plan, asked)
+    if asked.weights:
+        from heuncli.balancing.weights import counterbalanced  # where they are asked for
+
+        found = replace(found, counterbalance=counterbalanced(spec, scene, plan, cycle, about, asked))
+    if asked.flywheel is not None:
+        from heuncli.balancing.wheel import with_wheel  # where one is asked for
+
+        found = with_wheel(found, spec, scene, plan, asked.flywheel)
+    return found
+
+
+def with_loads(
+    found: BalanceResults, spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: BalanceOptions
+) -> BalanceResults:
+    """The results with the orders of what loads put on the shaft, where there are any."""
+    if not scene.mechanism.loads and not scene.mechanism.gravity.any():
+        return found
+    from heuncli.balancing.load_torque import load_torque  # with all that solves loads
+
+    own = load_torque(spec, scene, plan)
+    if own.note or not own.rows:
+        return replace(found, notes=(*found.notes, own.note) if own.note else found.notes)
+    rows = tuple(row for row in own.rows if asked.orders is None or is_asked(row.order, asked.orders))
+    return replace(found, orders={**found.orders, "load": rows}, mean={**found.mean, "load": own.mean})
+
+
+def drawn(spec: Spec) -> PreparedScene:
+    """The scene, assembled."""
+    mechanism, _ = draw(spec._replace(sections={}))
+    t = spec.analysis.times[0] if spec.analysis.type == "state" and spec.analysis.times else 0.0
+    return prepare(mechanism, t)
+
+
+def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
+    """The cycle at so many angles that the highest orders are rounding; whether they are."""
+    count, before = SAMPLES * followed.turns, math.inf
+    while True:
+        cycle = followed.at(count)
+        found = mass_effects(cycle, about)
+        kinds = {"force": found.force, "moment": found.moment, "torque": found.half_slope}
+        highest = max(tail(own, QUARTER, found.terms[name]) for name, own in kinds.items())
+        rounding = highest < tolerances.CANCELS and highest * GOING_DOWN > before
+        if highest <= tolerances.ORDERS_SETTLED or rounding or count >= MOST_SAMPLES:
+            return cycle, count < MOST_SAMPLES
+        count, before = 2 * count, highest

@@ -1,0 +1,62 @@
+"""What was found of a cycle, as orders with their verdicts, means and what acts over the cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
+
+from heuncli import tolerances
+from heuncli.balancing.asked import BalanceOptions
+from heuncli.balancing.effects import MassEffects
+from heuncli.balancing.results import BalanceResults, OrderRow
+from heuncli.balancing.rows import CycleTurning, all_rows, residual, rounding_of
+from heuncli.balancing.verdicts import in_words
+from heuncli.results import Array
+from heuncli.spec.models import Spec
+
+NOTHING: Mapping[str, float] = MappingProxyType({})
+IN_TABLE = 1e-4  # of the largest order: smaller ones do not stand in a table unless they are asked for
+MOST_ROWS = 12
+
+
+def told(
+    spec: Spec, coordinate: str, turning: CycleTurning, effects: MassEffects, about: Array, asked: BalanceOptions,
+    noise: Mapping[str, float] = NOTHING,
+) -> BalanceResults:  # fmt: skip
+    """What was found, by orders of a coordinate at the cycle's rate; noise: below which force and moment are errors."""
+    scale = turning.scale
+    least = {name: max(x, noise.get(name, 0.0)) for name, x in rounding_of(effects, scale).items()}
+    found = all_rows(effects, turning, least)
+    words = {name: in_words(rows) for name, rows in found.items()}
+    if asked.orders is not None:
+        found = {name: tuple(row for row in rows if is_asked(row.order, asked.orders)) for name, rows in found.items()}
+    values = {
+        "force": -scale * effects.force, "moment": -scale * effects.moment,
+        "moment_orbital": -scale * effects.orbital, "moment_spin": -scale * effects.spin,
+        "torque": scale * effects.half_slope[:, :, None],
+    }  # fmt: skip
+    return BalanceResults(
+        title=spec.title, spec={"path": spec.path, "sha256": spec.sha256},
+        coordinate=coordinate, turns=turning.turns, rate=turning.rate, samples=len(effects.angles), settled=True,
+        about=about, place=asked.place, axis=turning.axis, effects=effects, orders=found,
+        words=words,
+        mean={name: own.sum(axis=1).mean(axis=0) for name, own in values.items()},
+        residual={name: residual(own, effects.angles, least[name.partition("_")[0]]) for name, own in values.items()},
+        shown=shown(found) if asked.orders is None else asked.orders,
+    )  # fmt: skip
+
+
+def is_asked(order: float, orders: Sequence[float]) -> bool:
+    """Whether an order is among those."""
+    return any(abs(order - one) < tolerances.SAME_VALUE for one in orders)
+
+
+def shown(found: dict[str, tuple[OrderRow, ...]]) -> tuple[float, ...]:
+    """The orders that a table shows: up to the last that is no small part of the largest of its quantity."""
+    last = 0.0
+    for rows in found.values():
+        largest = max((row.size for row in rows), default=0.0)
+        last = max([last, *(row.order for row in rows if row.size > IN_TABLE * largest)])
+    every = sorted({row.order for rows in found.values() for row in rows if row.order <= last})
+    some = {row.order for rows in found.values() for row in rows if row.size > 0.0}
+    return tuple(order for order in every if order == round(order) or order in some)[:MOST_ROWS]

@@ -1,0 +1,34 @@
+"""What the spec expects of its own results, and whether it holds: the verdicts of `heun check`."""
+
+from __future__ import annotations
+
+from heuncli.client_report.parts import Cell, Grid, Part, Sentence
+from heuncli.client_report.reported import AS_IT_STANDS, Reported
+from heuncli.report.text_table import TextColumn
+from heuncli.telling.outcomes import Outcome
+from heuncli.variants.stated import unit_of
+
+NONE = "The spec expects nothing."
+HOLDS, FAILS = "holds", "FAILS"
+HEADS = ("line", "case", "of", "unit", "at", "expected", "found", "allowed", "verdict")
+NUMBERS = frozenset({"line", "expected", "found", "allowed"})
+
+
+def check_parts(of: Reported) -> list[Part]:
+    """A line for each expectation."""
+    if not of.outcomes:
+        return [Sentence(NONE)]
+    cases = any(outcome.case for outcome in of.outcomes)
+    heads = [head for head in HEADS if cases or head != "case"]
+    columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
+    rows = [_row(of, outcome, cases=cases) for outcome in of.outcomes]
+    failed = [f"{outcome.name}: {outcome.failure}" for outcome in of.outcomes if outcome.failure is not None]
+    return [Grid("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
+
+
+def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[Cell]:
+    """The cells of one; what fails stands out."""
+    verdict = Cell(HOLDS if outcome.passed else FAILS, not outcome.passed)
+    case = [Cell(outcome.case or AS_IT_STANDS)] if cases else []
+    words = (outcome.of, unit_of(outcome.of, of.spec), outcome.when, outcome.expected, outcome.found, outcome.allowed)
+    return [Cell(str(outcome.line)), *case, *map(Cell, words), verdict]

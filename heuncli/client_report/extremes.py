@@ -1,0 +1,193 @@
+"""The lowest and the highest of a number over all load cases: as they are written, and which case governs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+import numpy as np
+
+from heuncli.client_report.reported import Reported, ReportedRun
+from heuncli.named_tuples import NamedTuple
+from heuncli.report.digits import OPEN, UNKNOWN, Style, rough, style, write_times
+from heuncli.report.table_units import Units
+from heuncli.results import Array, Place
+from heuncli.telling.columns import position
+from heuncli.telling.envelopes import Bound, envelope
+from heuncli.telling.kept import BEYOND, KeptNumber
+
+LEAST, GREATEST = "least", "greatest"
+LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
+
+
+class End(NamedTuple):
+    """An extreme of one case: its value in SI or the word in its place, its instant, and where it is along a run."""
+
+    value: float | str
+    at: float | None
+    place: str | None
+
+
+class Ends(NamedTuple):
+    """The lowest and the highest of a number in one case, and the error that its run states [SI].
+
+    parts_open: whether it is open at some of the instants.
+    """
+
+    low: End
+    high: End
+    error: float
+    unit: str
+    parts_open: bool
+
+    @property
+    def values(self) -> list[float]:
+        """Those of the two that are numbers."""
+        return [end.value for end in (self.low, self.high) if isinstance(end.value, float)]
+
+
+def ends_of(run: ReportedRun, path: str) -> Ends | None:
+    """The extremes of a number of one case, of a run of cuts those over its whole stretch; None where it has none."""
+    numbers = run.kept.numbers
+    if path in numbers:
+        return _ends(numbers[path], numbers[path])
+    if path + LOWEST not in numbers:
+        return None
+    ends = _ends(numbers[path + LOWEST], numbers[path + HIGHEST])
+    return ends._replace(
+        low=_placed(ends.low, run, path, np.nanargmin), high=_placed(ends.high, run, path, np.nanargmax)
+    )
+
+
+def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> End:
+    """An extreme along a run of cuts with its place; of one that is the same at all instants no place is kept."""
+    if end.place is not None or not isinstance(end.value, float):
+        return end
+    _, name, *quantity = path.split(".")
+    section = run.results.sections[name]
+    values = section["stress"][quantity[1]] if quantity[0] == "stress" else section[quantity[0]]
+    if not np.isfinite(values[0]).any():
+        return end
+    cut = int(which(values[0]))
+    side = section["side"][cut] if section.get("side") else None
+    return end._replace(place=position(Place(float(section["s"][cut]), side, cut)))
+
+
+def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
+    low = End(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
+    high = End(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
+    is_open = OPEN in (*lowest.values.values(), *highest.values.values())
+    parts = is_open and isinstance(low.value, float) and isinstance(high.value, float)
+    return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts)
+
+
+class Governing(NamedTuple):
+    """By path the cases of the lowest and of the highest."""
+
+    least: Mapping[str, Bound]
+    greatest: Mapping[str, Bound]
+
+    def low(self, path: str) -> Bound | None:
+        """The lowest of all cases."""
+        return self.least.get(path) or self.least.get(path + LOWEST)
+
+    def high(self, path: str) -> Bound | None:
+        """The highest of all cases."""
+        return self.greatest.get(path) or self.greatest.get(path + HIGHEST)
+
+
+def governing(of: Reported) -> Governing:
+    """Which case governs each number."""
+    rows = envelope({run.name: run.kept for run in of.runs})
+    least = {row.path: row.least for row in rows if row.least is not None}
+    greatest = {row.path: row.greatest for row in rows if row.greatest is not None}
+    return Governing(least, greatest)
+
+
+def style_of(ends: Sequence[Ends], run: ReportedRun, size: float) -> Style:
+    """How numbers of one family are written in a unit of which so many are one in SI."""
+    scale = max((abs(value) for one in ends for value in one.values), default=0.0)
+    error = max((one.error for one in ends), default=0.0)
+    lost = max((run.page.certain.lost(one.unit) for one in ends), default=0.0)
+    return style(scale * size, error * size, lost * size)
+
+
+def text_of(value: float | str, how: Style, size: float) -> str:
+    """An extreme as it is written."""
+    if isinstance(value, float):
+        return how.write(value * size)
+    return UNKNOWN if value == BEYOND else OPEN if value == OPEN else UNKNOWN
+
+
+def is_steady(ends: Ends, how: Style, size: float) -> bool:
+    """Whether the lowest and the highest are the same to the digits that are written: then neither has an instant."""
+    return text_of(ends.low.value, how, size) == text_of(ends.high.value, how, size)
+
+
+def place_text(place: str | None, units: Units, *, named: bool = True) -> str:
+    """A place along a run of cuts, which is kept in metres, with the side of what acts there; named: its unit, too."""
+    if place is None:
+        return ""
+    distance, _, side = place.partition(" m")
+    unit, size = units.of("m")
+    return f"{float(distance) * size:.5g}{f' {unit}' * named}{side}"
+
+
+def instant_text(at: float | None, run: ReportedRun) -> str:
+    """An instant as it is written; nothing where there is none, or only one."""
+    times = run.results.time
+    if at is None or len(times) == 1:
+        return ""
+    return write_times([at], float(np.ptp(times)))[0]
+
+
+class Spread(NamedTuple):
+    """A number over all cases, ready to be told in a sentence; high: the highest, None where it is not known."""
+
+    name: str
+    unit: str
+    high: Bound | None
+    error: float
+    how: Style
+    size: float
+    place: str
+    at: str
+
+    def high_text(self) -> str:
+        """The highest with its unit and its error."""
+        assert self.high is not None
+        unit = f" {self.unit}" if self.unit != "1" else ""
+        return f"{self.how.write(self.high.value * self.size)}{unit} (± {rough(self.error * self.size)}{unit})"
+
+    @property
+    def where(self) -> str:
+        """Where, when and in which case that is."""
+        parts = [f"at s = {self.place}"] if self.place else []
+        parts += [f"at t = {self.at} s"] if self.at else []
+        parts += [f"in case {self.high.case}"] if self.high and self.high.case else []
+        return "".join(f", {part}" for part in parts)
+
+
+def spread_of(of: Reported, path: str, name: str) -> Spread | None:
+    """The highest of a number over all cases; None where no case has it, or it is 0 in all."""
+    found = {run.name: ends for run in of.runs if (ends := ends_of(run, path)) is not None}
+    known = {case: ends for case, ends in found.items() if isinstance(ends.high.value, float)}
+    if not known:
+        return None
+    case, ends = max(known.items(), key=lambda pair: pair[1].high.value)
+    run = next(run for run in of.runs if run.name == case)
+    unit, size = of.units.of(ends.unit)
+    high = Bound(float(ends.high.value), ends.high.at, case)
+    how = style_of(list(known.values()), run, size)
+    if how.write(high.value * size) == "0":
+        return None
+    steady = ends.high.place is None and is_steady(ends, how, size)
+    at = "" if steady else instant_text(ends.high.at, run)
+    return Spread(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
+
+
+def runs_in(of: Reported, path: str) -> Iterator[tuple[ReportedRun, Ends]]:
+    """The cases that have a number, with its extremes."""
+    for run in of.runs:
+        ends = ends_of(run, path)
+        if ends is not None:
+            yield run, ends

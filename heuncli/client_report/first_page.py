@@ -1,0 +1,169 @@
+"""The first page: of what the report is, and at a glance what it says. What keeps it from being true stands here."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from heuncli.client_report.extremes import Spread, spread_of
+from heuncli.client_report.parts import Facts, Part, Sentence
+from heuncli.client_report.reported import Reported
+from heuncli.method_rows import row_of
+from heuncli.report.impulse_tables import sizes_of
+from heuncli.report.plurals import count
+from heuncli.version import VERSION
+
+MOST_NAMED = 8
+
+
+def first_page(of: Reported) -> list[Part]:
+    """What stands below the title."""
+    return [Facts(list(_identity(of))), *summary(of)]
+
+
+def _identity(of: Reported) -> Iterator[tuple[str, str]]:
+    """Whose report, of which files, by which program."""
+    for label, text in zip(("project", "author", "date"), (of.imprint.project, of.imprint.author, of.imprint.date),
+                           strict=True):  # fmt: skip
+        if text:
+            yield label, text
+    yield "spec", of.spec.path
+    yield "SHA-256", of.spec.sha256
+    for name, digest in of.digests.items():
+        yield f"file {name}", f"SHA-256 {digest}"
+    if of.has_cases:
+        yield "load cases", ", ".join(_told(run.name, run.title) for run in of.runs)
+    if of.left_out:
+        yield "not reported", f"the load cases {', '.join(of.left_out)}"
+    for text in of.given:
+        yield "given", text
+    yield "solved by", _versions(of)
+
+
+def _told(name: str, title: str) -> str:
+    return f"{name} ({title})" if title and title != name else name
+
+
+def _versions(of: Reported) -> str:
+    """What computed it."""
+    kernels = dict.fromkeys(str(run.results.work.get("kernel", "")) for run in of.runs)
+    parts = [f"heun {VERSION}", *(f"{kernel} kernel" for kernel in kernels if kernel), f"NumPy {np.__version__}"]
+    rows = [row_of(str(run.results.model.get("method", ""))) for run in of.runs]
+    if any(row is not None and row.kind == "SciPy" for row in rows):
+        parts.append(f"SciPy {sys.modules['scipy'].__version__}")
+    return ", ".join(parts)
+
+
+def summary(of: Reported) -> list[Part]:
+    """What is to be known before anything else: what failed, what is open, what governs."""
+    return [*_ended(of), *_checked(of), *_used(of), *_largest(of), *_struck(of), *_open(of), *_warned(of)]
+
+
+def _ended(of: Reported) -> Iterator[Sentence]:
+    """Whether every run went to its end, and how far it is claimed."""
+    for run in of.runs:
+        case = f"Case {run.name}: " if run.name else ""
+        status = run.results.status
+        if status.get("code", "completed") != "completed":
+            yield Sentence(f"{case}the run {status['code']}: {status.get('message', '')}", "bad")
+        if (horizon := run.results.accuracy.get("horizon")) is not None:
+            text = f"{case}from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 there"
+            yield Sentence(f"{text}. All extremes are those before.", "unsure")
+
+
+def _checked(of: Reported) -> Iterator[Sentence]:
+    """How many expectations hold."""
+    failed = [outcome for outcome in of.outcomes if not outcome.passed]
+    if failed:
+        names = _some([outcome.name for outcome in failed])
+        total = len(of.outcomes)
+        yield Sentence(f"{len(failed)} of {count(total, 'check')} of the spec FAIL: {names}.", "bad")
+    elif of.outcomes:
+        text = "all of them hold" if len(of.outcomes) > 1 else "it holds"
+        yield Sentence(f"{count(len(of.outcomes), 'check')} of the spec: {text}.", "good")
+    else:
+        yield Sentence("The spec expects nothing: no result was checked against a known number.", "unsure")
+
+
+def _used(of: Reported) -> Iterator[Sentence]:
+    """The section that is used most, and those beyond their strength."""
+    found = [spread for spread in _of_sections(of, "utilisation") if spread.high is not None]
+    if not found:
+        return
+    beyond = [spread.name for spread in found if spread.high is not None and spread.high.value > 1.0]
+    most = max(found, key=lambda spread: spread.high.value if spread.high else 0.0)
+    what = f"Largest utilisation of strength{_known(of, 'sections')}"
+    text = f"{what}: {most.high_text()} in section {most.name}{most.where}."
+    if beyond:
+        yield Sentence(f"{text} Beyond strength: {_some(beyond)}.", "bad")
+    else:
+        yield Sentence(text, "unsure" if _known(of, "sections") else "good")
+
+
+def _known(of: Reported, block: str) -> str:
+    """What is said beside the largest of a block, where some of it is open and might be larger."""
+    is_open = any(path.startswith(f"{block}.") for run in of.runs for path in run.kept.open)
+    return " that is known" if is_open else ""
+
+
+def _of_sections(of: Reported, quantity: str) -> list[Spread]:
+    names = of.runs[0].results.sections
+    found = [spread_of(of, f"sections.{name}.stress.{quantity}", name) for name in names]
+    return [spread for spread in found if spread is not None]
+
+
+def _largest(of: Reported) -> Iterator[Sentence]:
+    """The largest load of a joint, and on the foundation."""
+    whole = spread_of(of, "foundation.force", "the foundation")
+    joints = [spread_of(of, f"joints.{name}.force", name) for name in of.runs[0].results.joints]
+    known = [spread for spread in joints if spread is not None and spread.high is not None]
+    if known:
+        most = max(known, key=lambda spread: spread.high.value if spread.high else 0.0)
+        yield Sentence(f"Largest joint force{_known(of, 'joints')}: {most.high_text()} in {most.name}{most.where}.")
+    if whole is not None and whole.high is not None:
+        yield Sentence(f"Largest force on the foundation{_known(of, 'foundation')}: {whole.high_text()}{whole.where}.")
+
+
+def _struck(of: Reported) -> Iterator[Sentence]:
+    """The blows, and their largest impulse."""
+    for run in of.runs:
+        blows = run.results.impulses
+        if not blows:
+            continue
+        unit, size = of.units.of("N·s")
+        most = size * max(sizes_of(blow, of.labels)[0] for blow in blows)
+        text = f"{count(len(blows), 'blow')}; largest impulse of a joint, a stop or on the ground: {most:.6g} {unit}."
+        yield Sentence(f"Case {run.name}: {text}" if run.name else text)
+
+
+def _open(of: Reported) -> Iterator[Sentence]:
+    """What the laws of rigid bodies leave open."""
+    paths = list(dict.fromkeys(path for run in of.runs for path in run.kept.open))
+    if paths:
+        text = f"{count(len(paths), 'component')} of loads are open: the supports are redundant, and rigid bodies do"
+        yield Sentence(f"{text} not say how they share ({_some(paths)}).", "unsure")
+    chosen = dict.fromkeys(run.results.model["split"] for run in of.runs if run.results.model.get("split"))
+    for words in chosen:
+        yield Sentence(f"What redundant supports leave open was split: {words}; other splits do as well.", "unsure")
+
+
+def _warned(of: Reported) -> Iterator[Sentence]:
+    """Every warning, with its case."""
+    for problem in of.spec.warnings:
+        yield Sentence(f"Warning: {problem.message}", "unsure")
+    read = {problem.message for problem in of.spec.warnings}
+    told: dict[str, list[str]] = {}
+    for run in of.runs:
+        for text in (*run.results.warnings, *run.study.later_warnings):
+            if text not in read:
+                told.setdefault(text, []).append(run.name)
+    for text, names in told.items():
+        case = f" (case {_some(names)})" if any(names) else ""
+        yield Sentence(f"Warning: {text}{case}", "unsure")
+
+
+def _some(names: Sequence[str]) -> str:
+    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + rest

@@ -1,0 +1,79 @@
+"""What is reported: a scene in its load cases, each solved, with its numbers, and what was asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.records import record
+from heuncli.report.labels import Labels
+from heuncli.report.page import Page
+from heuncli.report.table_units import Units
+from heuncli.results import Results
+from heuncli.spec.models import Spec
+from heuncli.study.ask.study import Study
+from heuncli.telling.kept import KeptRun
+from heuncli.telling.outcomes import Outcome
+
+AS_IT_STANDS = "as it stands"  # the scene without the values of a case
+LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "events"})
+
+
+@record
+class ReportedRun:
+    """A load case, solved: its name, empty for the scene as it stands; kept: its numbers with extremes and errors."""
+
+    name: str
+    title: str
+    study: Study
+    kept: KeptRun
+    page: Page
+
+    @property
+    def results(self) -> Results:
+        """What was solved."""
+        return self.study.results
+
+    @property
+    def told(self) -> str:
+        """The case as it is called."""
+        return self.name or AS_IT_STANDS
+
+
+class Imprint(NamedTuple):
+    """What stands on the first page beside what was solved; nothing of it is made up: what is not given is left out."""
+
+    date: str = ""
+    author: str = ""
+    project: str = ""
+
+
+@record
+class Reported:
+    """All that a report is made of.
+
+    spec: the scene as it stands; text: its file; digests: of the files that it names, by their names; runs: those that
+    are told; outcomes: of all that is expected, in their order; given: what --set and the solver's options were; left
+    out: the cases of the spec that were not asked for.
+    """
+
+    spec: Spec
+    text: str
+    digests: Mapping[str, str]
+    runs: Sequence[ReportedRun]
+    outcomes: Sequence[Outcome]
+    given: Sequence[str]
+    left_out: Sequence[str]
+    reduce: bool
+    units: Units
+    imprint: Imprint
+
+    @property
+    def labels(self) -> Labels:
+        """The kinds of everything that is named."""
+        return self.runs[0].page.labels
+
+    @property
+    def has_cases(self) -> bool:
+        """Whether load cases are told apart."""
+        return len(self.runs) > 1 or bool(self.runs[0].name)

@@ -1,0 +1,144 @@
+"""The sections: their diagrams, their extremes with places, and how much of the strength they use."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.client_report.extremes import (
+    Ends,
+    governing,
+    instant_text,
+    is_steady,
+    place_text,
+    runs_in,
+    style_of,
+    text_of,
+)
+from heuncli.client_report.load_table import LoadGroup, LoadRow, grid, timed
+from heuncli.client_report.parts import Cell, Drawing, Grid, Part
+from heuncli.client_report.reported import Reported, ReportedRun
+from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.courses import Pictured
+from heuncli.pictures.diagrams import diagrams
+from heuncli.report.digits import rough
+from heuncli.report.table_blocks import FAMILIES
+from heuncli.report.table_plans import SECTIONS
+from heuncli.report.text_table import TextColumn
+from heuncli.results_schema import MAGNITUDES, RESULTANTS, STRESSES
+
+SHARE = "utilisation: the largest von Mises stress (mises) over the strength given; above 1 the section is overloaded"
+SAFE = "stresses are on the safe side where the shape of a section is not known"
+MOST_USED = "bold: the section that is used most"
+NO_STRENGTH = "not given"
+
+
+def section_parts(of: Reported) -> list[Part]:
+    """All that is told of the sections."""
+    names = list(of.runs[0].results.sections)
+    return [*_stress(of, names), *_diagrams(of, names), *_extremes(of, names)] if names else []
+
+
+def _diagrams(of: Reported, names: list[str]) -> Iterator[Part]:
+    """A figure for each run of cuts: of the case whose stress or bending governs."""
+    for name in names:
+        if "s" not in of.runs[0].results.sections[name]:
+            continue
+        run = _governing_run(of, name)
+        figure = diagrams([Pictured("", run.study)], [name], of.units)._replace(title="")
+        case = f", load case {run.name}" if run.name else ""
+        yield Drawing(figure, f"Section {name}{case}: the piece beyond the cut ON the part before it; N > 0 tension")
+
+
+def _governing_run(of: Reported, name: str) -> ReportedRun:
+    """The case with the largest stress in a section, without stresses with the largest bending or force."""
+    governs = governing(of)
+    paths = [f"sections.{name}.stress.{quantity}" for quantity in ("utilisation", "mises")]
+    paths += [f"sections.{name}.{quantity}" for quantity in ("M1", "M2", "N", "Q1", "Q2", "T")]
+    for path in paths:
+        bounds = [bound for bound in (governs.low(path), governs.high(path)) if bound is not None and bound.value]
+        if bounds:
+            largest = max(bounds, key=lambda bound: abs(bound.value))
+            return next(run for run in of.runs if run.name == largest.case)
+    return of.runs[0]
+
+
+def _extremes(of: Reported, names: list[str]) -> Iterator[Part]:
+    """The loads and stresses of all sections, single cuts apart from runs of cuts, which have places."""
+    sections = of.runs[0].results.sections
+    for along in (False, True):
+        groups = [_group(of, name) for name in names if ("s" in sections[name]) == along]
+        if groups:
+            caption = SECTIONS.heading(of.runs[0].results, of.labels)
+            yield grid(of, caption, groups, along=along)
+
+
+def _group(of: Reported, name: str) -> LoadGroup:
+    """The numbers of one section."""
+    own = [(quantity, f"sections.{name}.{quantity}") for quantity in RESULTANTS]
+    own += [(quantity, f"sections.{name}.stress.{quantity}") for quantity in STRESSES]
+    rows = [
+        LoadRow(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
+        for quantity, path in own
+        if any(True for _ in runs_in(of, path))
+    ]
+    return LoadGroup(f"{name}  {SECTIONS.note(name, of.labels)}", rows)
+
+
+class UsedSection(NamedTuple):
+    """The largest stress of a section in one case, and what share of the strength that is."""
+
+    name: str
+    run: ReportedRun
+    mises: Ends
+    used: Ends | None
+
+
+def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
+    """The table of utilisation, where sections have properties."""
+    found = [used for name in names for used in _used(of, name)]
+    if not found:
+        return
+    most = max(map(_size, found))
+    pa, m = of.units.of("Pa")[0], of.units.of("m")[0]
+    heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if of.has_cases else [])]
+    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else []), TextColumn(f"mises [{pa}]")]
+    heads += [TextColumn(f"± [{pa}]"), TextColumn(f"strength [{pa}]"), TextColumn("utilisation")]
+    rows = [_cells(of, one, found, most=_size(one) == most) for one in found]
+    notes = [SHARE, SAFE, MOST_USED] if any(one.used is not None for one in found) else [SAFE]
+    yield Grid("STRESS  the largest of each section", heads, rows, notes)
+
+
+def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[Cell]:
+    """The line of a section."""
+    size = of.units.of("Pa")[1]
+    how = style_of([each.mises for each in found], of.runs[0], size)
+    shares = style_of([each.used for each in found if each.used is not None], of.runs[0], 1.0)
+    end = (one.used or one.mises).high
+    steady = end.place is None and is_steady(one.mises, how, size)
+    strength = one.run.study.spec.sections[one.name].strength
+    return [
+        Cell(one.name),
+        *([Cell(one.run.told)] if of.has_cases else []),
+        Cell(place_text(end.place, of.units, named=False)),
+        *([Cell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
+        Cell(text_of(one.mises.high.value, how, size)),
+        Cell(rough(one.mises.error * size)),
+        Cell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
+        Cell("" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None),
+    ]
+
+
+def _used(of: Reported, name: str) -> Iterator[UsedSection]:
+    """Of a section the case that governs its stress."""
+    path = f"sections.{name}.stress"
+    shares = {run.name: ends for run, ends in runs_in(of, f"{path}.utilisation")}
+    found = [UsedSection(name, run, ends, shares.get(run.name)) for run, ends in runs_in(of, f"{path}.mises")]
+    if found:
+        yield max(found, key=_size)
+
+
+def _size(one: UsedSection) -> tuple[float, float]:
+    """By what sections are compared: by their utilisation, those without a strength by their stress."""
+    used = one.used.high.value if one.used is not None else 0.0
+    stress = one.mises.high.value
+    return (used if isinstance(used, float) else 0.0, stress if isinstance(stress, float) else 0.0)

@@ -1,0 +1,91 @@
+"""How far the numbers can be trusted: stated errors, residuals, horizons; and what no number can be given of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.client_report.parts import Cell, Facts, Grid, Listing, Part, Sentence
+from heuncli.client_report.reported import Reported, ReportedRun
+from heuncli.report.certain_sums import sums_table
+from heuncli.report.digits import rough
+from heuncli.report.heading import heading
+from heuncli.report.text_table import TextColumn
+from heuncli.results_schema import XYZ, kind_of_error
+
+MEANING = (
+    "Every motion is integrated a second time, with a thirtieth of the error allowed. The stated errors are twice the "
+    "largest difference of the two, of all instants so far, and not below rounding; they hold for all numbers of a "
+    "kind. They tell of the solution of the model, not of how well the model is the machine."
+)
+AT_REST = (
+    "Nothing is integrated: the equations of one instant are solved, and the stated errors are those of rounding. They "
+    "tell of the solution of the model, not of how well the model is the machine."
+)
+NAMED = {"reactions": "joints", "drives": "drives", "foundation": "foundation", "sections": "sections"}
+MOTION = ("places of points", "m")
+LOADS = ("N", "N·m")
+CASE = TextColumn("case", "left")
+CERTAIN = "Nothing is open: the laws of rigid bodies determine every load that is reported."
+
+
+def trust_parts(of: Reported) -> list[Part]:
+    """What is said of each run, and the errors that it states."""
+    moved = any(run.results.work.get("steps") for run in of.runs)
+    parts: list[Part] = [Sentence(MEANING if moved else AT_REST)]
+    for run in of.runs:
+        if of.has_cases:
+            parts.append(Sentence(f"Case {run.told}:"))
+        parts.append(Facts([line for line in heading(run.results) if line[0] not in ("heun", "model", "warning")]))
+    return [*parts, _errors(of)]
+
+
+def _errors(of: Reported) -> Grid:
+    """The stated errors of all kinds, the largest of all cases."""
+    found: dict[tuple[str, str], tuple[float, str]] = {}
+    for run in of.runs:
+        own = {MOTION: run.page.certain.error("motion", "m")} | _of_loads(run)
+        for key, error in own.items():
+            found[key] = max(found.get(key, (0.0, run.name)), (error, run.name))
+    rows = []
+    for (kind, unit), (error, case) in found.items():
+        shown, size = of.units.of(unit)
+        rows.append([Cell(kind), Cell(shown), Cell(rough(error * size)), *([Cell(case)] if of.has_cases else [])])
+    heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±")]
+    return Grid("STATED ERRORS  of all numbers of a kind", [*heads, *([CASE] if of.has_cases else [])], rows)
+
+
+def _of_loads(run: ReportedRun) -> dict[tuple[str, str], float]:
+    """The largest error of each kind of loads and unit that a case tells of, by what they are called."""
+    found: dict[tuple[str, str], float] = {}
+    for path, number in run.kept.numbers.items():
+        block, *name, quantity = [word for word in path.split(".") if word not in XYZ]
+        kind = NAMED.get(kind_of_error(block, ".".join(name), quantity))
+        if kind is not None and number.unit in LOADS:
+            found[kind, number.unit] = max(found.get((kind, number.unit), 0.0), number.error)
+    return found
+
+
+def open_parts(of: Reported) -> list[Part]:
+    """What is open, and the sums that are certain all the same."""
+    parts: list[Part] = []
+    for run in of.runs:
+        if run.kept.open:
+            parts.append(Listing(f"Open{_in(run)}", run.kept.open))
+        parts += _sums(of, run)
+    if not parts:
+        return [Sentence(CERTAIN)]
+    chosen = dict.fromkeys(run.results.model["split"] for run in of.runs if run.results.model.get("split"))
+    return [
+        *parts,
+        *(Sentence(f"Chosen, not certain: {words}; other splits do as well.", "unsure") for words in chosen),
+    ]
+
+
+def _sums(of: Reported, run: ReportedRun) -> Iterator[Part]:
+    table = sums_table(run.page.results, run.page.certain, run.page.beyond, of.units.of("N"))
+    if table is not None:
+        yield Listing(f"Certain sums{_in(run)}", table.notes)
+
+
+def _in(run: ReportedRun) -> str:
+    return f" in case {run.name}" if run.name else ""

@@ -1,0 +1,22 @@
+"""`heun plot SPEC balance`: mass effects over a cycle, by orders."""
+
+from __future__ import annotations
+
+from heuncli.balancing.study import balance
+from heuncli.cli.solving import warn
+from heuncli.cli.units import units
+from heuncli.commands.plot.asked import PlotAsked
+from heuncli.commands.plot.request import PlotRequest
+from heuncli.commands.plot.sources import require_no_paths, specs_of
+from heuncli.drawing.figure import Figure
+from heuncli.pictures.orders import Balanced, orders
+
+
+def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
+    """The figure. Raises UsageError, SpecError, SolveError."""
+    require_no_paths(asked)
+    sources = []
+    for name, spec in specs_of(asked.files, request):
+        sources.append(Balanced(name, balance(spec)))
+        warn(spec, None, request.quiet)
+    return orders(sources, units(request.units))

@@ -1,0 +1,43 @@
+"""`heun plot SPEC modes`: the shapes of small oscillations."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from heuncli.cli.entry import UsageError
+from heuncli.cli.solving import warn
+from heuncli.commands.plot.asked import PlotAsked
+from heuncli.commands.plot.request import PlotRequest
+from heuncli.commands.plot.sources import require_no_paths, specs_of
+from heuncli.drawing.figure import Figure
+from heuncli.errors import Finding, Problem
+from heuncli.oscillations.moved_bodies import MovedBodies, moved_bodies
+from heuncli.pictures.mode_shapes import mode_shapes
+from heuncli.scenery.machine import machine_of
+from heuncli.scenery.views import AZIMUTH, ELEVATION, View, turned, usual, view_of
+
+
+def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
+    """The figure. Raises UsageError, NotDrawable, SpecError, SolveError."""
+    require_no_paths(asked)
+    specs = specs_of(asked.files, request)
+    if len(specs) > 1:
+        message = f"heun plot modes: of one scene in one case, and {len(specs)} are named"
+        raise UsageError(Problem("bad-option", message, hint="call it once for each"))
+    ((_, spec),) = specs
+    found = moved_bodies(spec)
+    warn(spec, None, request.quiet)
+    return mode_shapes(found, machine_of(spec), _view(found, request))
+
+
+def _view(found: MovedBodies, request: PlotRequest) -> View:
+    """From where the modes are seen. Raises UsageError."""
+    if request.view is None:
+        seen = usual(found.scene, np.concatenate([found.places, found.centres]))
+        across = all(found.moves_across(k, seen.toward) for k in range(len(found.turns)))
+        return seen if across else turned(AZIMUTH, ELEVATION, found.scene.mechanism.gravity)
+    try:
+        return view_of(request.view, found.scene.mechanism.gravity)
+    except Finding as finding:
+        message = f"--view {request.view}: {finding.message}"
+        raise UsageError(Problem("bad-option", message, hint=finding.hint)) from None

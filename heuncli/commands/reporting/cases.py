@@ -1,0 +1,132 @@
+"""The load cases of a report: read, solved one after the other, held against what the spec expects."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from heuncli.cli import alarm, memory
+from heuncli.cli.entry import UsageError
+from heuncli.cli.solving import overrides, solver_options, warn
+from heuncli.cli.units import units
+from heuncli.client_report.reported import LOADS, Imprint, Reported, ReportedRun
+from heuncli.commands.reporting.request import ReportRequest
+from heuncli.errors import HeunError, Problem
+from heuncli.nearest import did_you_mean
+from heuncli.records import replace
+from heuncli.report.cut_runs import LOADS as RESULTANTS
+from heuncli.report.labels import labels_of
+from heuncli.report.page import page_of
+from heuncli.report.table_units import Units
+from heuncli.spec.digest import digest
+from heuncli.spec.load import load_with_cases
+from heuncli.spec.models import Spec
+from heuncli.spec.named_files import NamedFiles
+from heuncli.spec.source import text_in
+from heuncli.study.ask.expectations import compare
+from heuncli.study.ask.study import Study
+from heuncli.study.model.error_places import placed
+from heuncli.study.model.memory_estimate import Room
+from heuncli.study.model.options import Options
+from heuncli.study.model.selection import Selection, asked_by
+from heuncli.study.workflow import solve
+from heuncli.telling.keep import keep
+from heuncli.telling.outcomes import Outcome, outcome_of
+
+BLOWS_ALONE = frozenset({"impulses"})
+EMPTY: frozenset[str] = frozenset()
+OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
+
+
+class DigestedFiles(NamedFiles):
+    """The files beside a spec; of each that is read its digest is kept, by its name."""
+
+    def __init__(self, spec: str) -> None:
+        super().__init__(spec)
+        self.digests: dict[str, str] = {}
+
+    def content(self, name: str) -> bytes | bytearray:
+        """The bytes of a file. Raises Finding."""
+        content = super().content(name)
+        self.digests[name] = digest(content)
+        return content
+
+
+def reported(request: ReportRequest) -> Reported:
+    """All cases that are asked for, solved. Raises what solving raises: with a case unsolved there is no report."""
+    shown, options = units(request.units), solver_options(request)
+    given = overrides(request.set)
+    text = text_in(request.spec)
+    files = DigestedFiles(request.spec)
+    spec, cases = load_with_cases(request.spec, given, not given, text, files)
+    chosen = _chosen(request, cases)
+    told = chosen or {"": spec}
+    outcomes: list[Outcome] = []
+    runs: list[ReportedRun] = []
+    if "" not in told and request.case is None and spec.expect:  # what is expected of the scene as it stands
+        outcomes += _outcomes(_solved("", spec, options, told=False), request, "")
+    for name, one in told.items():
+        study = _solved(name, one, options, told=True)
+        outcomes += _outcomes(study, request, name)
+        runs.append(_run(name, spec.cases.get(name, ""), study, shown))
+        warn(one, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings)
+    imprint = Imprint(request.date or "", request.author or "", request.project or "")
+    left_out = [name for name in cases if name not in told]
+    return Reported(
+        spec, text, files.digests, runs, outcomes, list(_given(request)), left_out,
+        not request.no_reduce, shown, imprint,
+    )  # fmt: skip
+
+
+def _chosen(request: ReportRequest, cases: Mapping[str, Spec]) -> dict[str, Spec]:
+    """The cases of `--case`, all without it. Raises UsageError."""
+    if request.case is None:
+        return dict(cases)
+    names = [name.strip() for name in request.case.split(",")]
+    for name in names:
+        if name not in cases:
+            hint = did_you_mean(name, cases, "cases") if cases else "cases: {NAME: {set: {PARAMETER: VALUE}}}"
+            raise UsageError(Problem("unknown-case", f"--case {name}: there is no such load case", hint=hint))
+    return {name: cases[name] for name in names}
+
+
+def _solved(name: str, spec: Spec, options: Options, *, told: bool) -> Study:
+    """A case with all that is told of it, and all that is expected. Raises what `solve` does, with the case's name."""
+    asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else Selection(EMPTY)
+    if told:
+        asked = asked.with_all(Selection(wanted_of(spec)))
+    own = replace(options, wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(),
+                  room=Room(*memory.room("table")))  # fmt: skip
+    try:
+        with placed(spec):
+            return solve(spec, own)
+    except HeunError as error:
+        if name:
+            error.tell(*(each._replace(message=f"in case {name}: {each.message}") for each in error.problems))
+        raise
+
+
+def wanted_of(spec: Spec) -> frozenset[str]:
+    """The reports that are told of a scene: of blows at time 0 alone the blows."""
+    return BLOWS_ALONE if spec.analysis.type == "impulse" else LOADS
+
+
+def _outcomes(study: Study, request: ReportRequest, name: str) -> list[Outcome]:
+    return [outcome_of(compare(study, item), request.spec, name) for item in study.spec.expect]
+
+
+def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
+    """A case with its numbers, as they are told."""
+    labels = replace(labels_of(study.spec), units=shown)
+    page = page_of(study.results, labels, study.magnitudes)
+    if study.results.impulses:
+        page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
+    return ReportedRun(name, title, study, keep(study, wanted_of(study.spec)), page)
+
+
+def _given(request: ReportRequest) -> Iterator[str]:
+    """What of the command line changes the numbers, as it was given."""
+    yield from (f"--set {word}" for word in request.set)
+    for name in OPTIONS:
+        if (value := getattr(request, name)) is not None:
+            yield f"--{name} {value}"
+    yield from (f"--{name.replace('_', '-')}" for name in SWITCHES if getattr(request, name))

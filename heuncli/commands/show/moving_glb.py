@@ -1,0 +1,26 @@
+"""The moving bodies of a solved scene as a file for programs that draw in space: up to its horizon, close enough."""
+
+from __future__ import annotations
+
+import math
+
+from heuncli.pictures.courses import instants
+from heuncli.scenery.gltf import binary
+from heuncli.scenery.machine import machine_of
+from heuncli.scenery.poses import poses_of, up_of
+from heuncli.study.ask.study import Study
+from heuncli.study.search.instants import turned_between
+
+TORN = math.pi / 2.0  # rad: beyond, what goes the shortest way between two instants no longer follows a body
+TOLD = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"
+
+
+def moving_glb(study: Study) -> bytes:
+    """The file of a study whose motion was solved; the study's warnings tell where its instants are too few."""
+    times = instants(study)
+    if not study.of_one_instant and len(times) > 1:
+        turned = float(turned_between(study.setup, study.history, times).max(initial=0.0))
+        if turned > TORN:
+            study.later_warnings[TOLD.format(math.degrees(turned))] = None
+    poses = poses_of(study, times)
+    return binary(machine_of(study.spec), poses, up_of(study.spec, poses))

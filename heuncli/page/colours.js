@@ -1,0 +1,24 @@
+/** @file The colours of the page: those of its style, light or dark; of bodies tints that the colour-blind tell apart. */
+
+const NAMES = ["paper", "ink", "faint", "line", "panel", "accent", "positive", "negative", "force", "moment"];
+const HUES = [[205, 45], [28, 60], [160, 38], [325, 35], [48, 50], [265, 30], [190, 20], [95, 28]];
+export const SHADES = 12;
+
+/** The colours now in force. @returns {Record<string, string> & {dark: boolean}} */
+export function coloursNow() {
+  const style = getComputedStyle(document.documentElement);
+  const found = { dark: matchMedia("(prefers-color-scheme: dark)").matches };
+  for (const name of NAMES) found[name] = style.getPropertyValue(`--${name}`).trim();
+  return found;
+}
+
+/** The colours of a body: shades from dark to bright, and one for its edges. @param {number} k @param {boolean} dark */
+export function tints(k, dark) {
+  const [hue, rich] = HUES[k % HUES.length];
+  const [low, high] = dark ? [24, 52] : [52, 88];
+  const shades = [];
+  for (let i = 0; i < SHADES; i += 1) {
+    shades.push(`hsl(${hue} ${rich}% ${(low + ((high - low) * i) / (SHADES - 1)).toFixed(1)}%)`);
+  }
+  return { shades, edge: `hsl(${hue} ${rich}% ${dark ? 78 : 27}%)`, bar: `hsl(${hue} ${rich + 8}% ${dark ? 55 : 58}%)` };
+}

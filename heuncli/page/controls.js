@@ -1,0 +1,201 @@
+/** @file The controls of the page: what they offer, and what they do when they are used. */
+
+import { coursesOf, peakOf } from "./courses.js";
+import { instant } from "./digits.js";
+import { by, fill, made } from "./elements.js";
+import { listenToPointers, viewKey } from "./pointing.js";
+import { SPEEDS, speedFor } from "./player.js";
+import { arrowChoices } from "./wrenches.js";
+
+/** How opaque bodies are. */
+const LOOKS = [[1, "solid"], [0.35, "glass"], [0, "edges"]];
+const MANY_NAMES = 7;
+const MOST_BUTTONS = 16;
+const STEP = 1.15;
+const SIZES = 1.2; // by how much a step of the arrow size lengthens
+
+/** What is chosen on the page beside the frame. */
+export class Chosen {
+  /** @param {object} data @param {() => void} changed */
+  constructor(data, changed) {
+    this.data = data;
+    this.changed = changed;
+    this.choices = arrowChoices(data);
+    this.courses = coursesOf(data);
+    this.names = data.scene.bodies.length + data.scene.joints.length <= MANY_NAMES;
+    this.values = true;
+    this.look = 1;
+    this.size = 1;
+    this.choice = this.choices[0] ?? null;
+    this.section = data.sections.find((section) => section.loads.length && section.s) ?? data.sections.find((section) => section.loads.length) ?? null;
+    this.load = this.section && this.governing();
+  }
+
+  /** The load of the section that is looked at first: the bending that is largest, else the first there is. */
+  governing() {
+    const bending = this.section.loads.filter((load) => load.label === "M1" || load.label === "M2");
+    const most = (load) => load.values.reduce((high, value) => Math.max(high, Math.abs(value) || 0), 0);
+    return bending.sort((a, b) => most(b) - most(a))[0] ?? this.section.loads[0];
+  }
+
+  /** The load that is drawn, or null. */
+  get drawn() {
+    return this.section && this.load ? { section: this.section, load: this.load, cut: this.section.chosen ?? 0 } : null;
+  }
+
+  /** The curve of a path. @param {string} path */
+  setCourse(path) {
+    const found = this.courses.find((course) => course.path === path) ?? this.courses[0];
+    this.course = found ? (found.made ??= found.make()) : null;
+  }
+}
+
+/** Whether a key belongs to the control that has the focus. @param {KeyboardEvent} event */
+function isOwn(event) {
+  const tag = event.target.tagName;
+  if (tag === "SELECT" || tag === "TEXTAREA") return true;
+  if (tag === "INPUT") return event.target.type === "range" ? event.key !== " " : event.key === " ";
+  return (tag === "BUTTON" || tag === "SUMMARY") && (event.key === " " || event.key === "Enter");
+}
+
+/** The view's buttons, the pointer, the keys. */
+export function listenToView(view, player, changed) {
+  const canvas = by("machine");
+  listenToPointers(canvas, view, changed);
+  const act = (id, what) => by(id).addEventListener("click", () => {
+    what();
+    changed();
+  });
+  ["x", "y", "z"].forEach((name, k) => act(`view-${name}`, () => {
+    view.along([0, 1, 2].map((i) => (i === k ? 1 : 0)));
+    view.fit();
+  }));
+  act("view-oblique", () => view.begin());
+  act("closer", () => view.magnify(STEP));
+  act("farther", () => view.magnify(1 / STEP));
+  const frames = player.time.length;
+  const jumps = {
+    " ": () => player.toggle(), Home: () => player.halt(0), End: () => player.halt(frames - 1),
+    ",": () => player.halt(player.frame - 1), ".": () => player.halt(player.frame + 1),
+  };
+  document.addEventListener("keydown", (event) => {
+    if (event.altKey || event.ctrlKey || event.metaKey || isOwn(event)) return;
+    if (jumps[event.key] && frames > 1) jumps[event.key]();
+    else if (event.target === canvas && viewKey(event, view)) changed();
+    else return;
+    event.preventDefault();
+  });
+}
+
+/** Play, slider, speed, marks; nothing of it where there is one instant. */
+export function listenToTime(data, player) {
+  const { count, time, marks } = data;
+  const moving = count > 1;
+  for (const id of ["moving", "over", "marks"]) by(id).hidden = !moving || (id === "marks" && !marks.length);
+  if (!moving) return;
+  const slider = by("time");
+  slider.max = String(count - 1);
+  slider.addEventListener("input", () => player.halt(Number(slider.value)));
+  by("ticks").append(...marks.map((mark) => made("option", "", { value: String(mark.frame) })));
+  by("play").addEventListener("click", () => player.toggle());
+  fill(by("speed"), SPEEDS.map(([speed, label]) => [String(speed), label]));
+  player.speed = speedFor(time[count - 1] - time[0]);
+  by("speed").value = String(player.speed);
+  by("speed").addEventListener("change", () => (player.speed = Number(by("speed").value)));
+  by("repeat").addEventListener("change", () => (player.repeats = by("repeat").checked));
+  const span = time[count - 1] - time[0];
+  const buttons = marks.slice(0, MOST_BUTTONS).map((mark) => {
+    const button = made("button", `${mark.words} ${instant(mark.time, span)} s`, { type: "button" });
+    button.addEventListener("click", () => player.halt(mark.frame));
+    return button;
+  });
+  by("marks").replaceChildren(made("span", "events and blows", { class: "word" }), ...buttons);
+  if (marks.length > MOST_BUTTONS) by("marks").append(made("span", `and ${marks.length - MOST_BUTTONS} more`));
+}
+
+/** What is drawn on the machine. */
+export function listenToDrawn(chosen, changed) {
+  const box = (id, field) => {
+    by(id).checked = chosen[field];
+    by(id).addEventListener("change", () => {
+      chosen[field] = by(id).checked;
+      changed();
+    });
+  };
+  box("names", "names");
+  box("values", "values");
+  fill(by("bodies"), LOOKS.map(([opaque, label]) => [String(opaque), label]));
+  by("bodies").addEventListener("change", () => {
+    chosen.look = Number(by("bodies").value);
+    changed();
+  });
+  fill(by("reactions"), [...chosen.choices.map((choice) => [choice.key, choice.label]), ["", "none"]]);
+  by("reactions").addEventListener("change", () => {
+    chosen.choice = chosen.choices.find((choice) => choice.key === by("reactions").value) ?? null;
+    changed();
+  });
+  by("size").addEventListener("input", () => {
+    chosen.size = SIZES ** Number(by("size").value);
+    changed();
+  });
+}
+
+/** Which load of which section, and at which cut. */
+export function listenToSections(chosen, changed) {
+  const { sections } = chosen.data;
+  by("cutting").hidden = !sections.length;
+  fill(by("section"), sections.map((section, k) => [String(k), section.name]));
+  const offer = () => {
+    const { section } = chosen;
+    const loads = section ? section.loads.map((load) => [load.label, load.label]) : [];
+    fill(by("load"), [...loads, ["", "none"]]);
+    by("load").value = chosen.load?.label ?? "";
+    by("load").disabled = !section;
+    by("cutlabel").hidden = !section?.s;
+    by("cut").max = String((section?.cuts.length ?? 1) - 1);
+    by("cut").value = String(section?.chosen ?? 0);
+  };
+  by("section").addEventListener("change", () => {
+    const wanted = chosen.load?.label;
+    chosen.section = sections[Number(by("section").value)];
+    chosen.load = wanted ? chosen.section.loads.find((load) => load.label === wanted) ?? chosen.governing() ?? null : null;
+    offer();
+    changed();
+  });
+  by("load").addEventListener("change", () => {
+    chosen.load = chosen.section?.loads.find((load) => load.label === by("load").value) ?? null;
+    changed();
+  });
+  by("cut").addEventListener("input", () => {
+    chosen.section.chosen = Number(by("cut").value);
+    changed();
+  });
+  if (chosen.section) by("section").value = String(sections.indexOf(chosen.section));
+  offer();
+}
+
+/** Which curve; a click into it goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
+export function listenToCurve(chosen, player, changed, panel) {
+  const select = by("path");
+  fill(select, chosen.courses.map((course) => [course.path, course.label]));
+  const first = chosen.load?.path ?? chosen.courses.find((course) => course.path.startsWith("joints."))?.path;
+  chosen.setCourse(first ?? "");
+  if (chosen.course) select.value = chosen.course.path;
+  else by("over").hidden = true;
+  select.addEventListener("change", () => {
+    chosen.setCourse(select.value);
+    changed();
+  });
+  const go = (highest) => () => chosen.course && player.halt(Math.max(0, peakOf(chosen.course, highest)));
+  by("lowest").addEventListener("click", go(false));
+  by("highest").addEventListener("click", go(true));
+  const canvas = by("curve");
+  const follow = (event) => {
+    if (event.buttons && panel()) player.halt(player.nearest(panel().instant(event.offsetX)));
+  };
+  canvas.addEventListener("pointerdown", (event) => {
+    canvas.setPointerCapture(event.pointerId);
+    follow(event);
+  });
+  canvas.addEventListener("pointermove", follow);
+}

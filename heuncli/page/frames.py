@@ -1,0 +1,91 @@
+"""The instants that a page holds: those asked for, and more between them where the motion would look torn.
+
+Nothing is shown beyond the horizon. Blows and jumps have both of their sides.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.integration.segments import limits_of
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+from heuncli.results_schema import REPORT_OF
+from heuncli.study.ask.study import Study
+from heuncli.study.search.extremes import distinct
+from heuncli.study.search.instants import turned_between
+
+LEAST = 120  # frames of a motion
+TURNED = 0.3  # rad: how far a body may turn from one frame to the next
+MOST = 600  # frames, where nobody says how many
+MOST_JUMPS = 60  # whose sides are frames: knots of tables count as jumps, too
+MOST_BYTES = 12_000_000  # of the numbers of a page, before they are text
+
+
+class PageFrames(NamedTuple):
+    """The instants (n,) [s] of a page, and what is to be said of them."""
+
+    times: Array
+    told: tuple[str, ...]
+
+
+def frames_of(study: Study, most: int = MOST) -> PageFrames:
+    """The frames of a page, at most so many."""
+    results = study.results
+    if study.of_one_instant:
+        return PageFrames(results.time, ())
+    horizon = results.accuracy.get("horizon")
+    asked = results.time if horizon is None else results.time[results.time < horizon]
+    if len(asked) < 2:
+        return PageFrames(results.time[:1], ("Nothing is claimed of this motion beyond its start.",))
+    limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
+    if len(asked) > limit:
+        some = np.linspace(0, len(asked) - 1, limit).round().astype(np.intp)
+        told = f"The run was asked for at {len(asked)} instants; {limit} of them are in this page."
+        return PageFrames(asked[some], (told,))
+    found = _with_sides(study, _filled(study, asked, limit), limit)
+    turned = float(turned_between(study.setup, study.history, found).max(initial=0.0))
+    if turned > math.pi / 2.0:
+        told = f"Between two frames a body turns up to {math.degrees(turned):.0f}°: only the frames show where it is."
+        return PageFrames(found, (told,))
+    return PageFrames(found, ())
+
+
+def _filled(study: Study, asked: Array, limit: int) -> Array:
+    """The asked instants, and so many between each two of them that the motion can be followed."""
+    turns = turned_between(study.setup, study.history, asked) / TURNED
+    shares = np.diff(asked) / (asked[-1] - asked[0]) * LEAST
+    parts = np.clip(np.ceil(np.maximum(turns, shares)), 1, limit).astype(int) if len(asked) < LEAST else turns
+    parts = np.maximum(1, np.ceil(parts)).astype(int)
+    while int(parts.sum()) >= limit and parts.max() > 1:
+        parts = np.maximum(1, np.minimum(parts - 1, parts * (limit - 1) // int(parts.sum())))
+    first = np.repeat(np.arange(len(parts)), parts)
+    share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
+    return np.append(asked[first] + share * np.diff(asked)[first], asked[-1])
+
+
+def _with_sides(study: Study, times: Array, limit: int) -> Array:
+    """The instants with both sides of blows and jumps, as far as there is room for them."""
+    blows = [float(blow["time"]) for blow in study.results.impulses]
+    jumps = study.history.jumps if len(study.history.jumps) <= MOST_JUMPS else blows
+    inside = distinct(np.array([t for t in (*jumps, *blows) if times[0] < t <= times[-1]]))
+    if not len(inside) or len(times) + 2 * len(inside) > limit:
+        return times
+    before, after = limits_of(inside)
+    return distinct(np.concatenate([times, before, after]))
+
+
+def _bytes_of_a_frame(study: Study) -> int:
+    """How much the numbers of one instant take, nearly."""
+    results = study.results
+    count = sum(_numbers(getattr(results, block)) for block in REPORT_OF if block not in ("bodies", "points"))
+    return 8 * count // len(results.time) + 28 * len(results.bodies) + 1
+
+
+def _numbers(block: object) -> int:
+    """How many numbers stand in a block."""
+    if isinstance(block, dict):
+        return sum(_numbers(member) for member in block.values())
+    return int(block.size) if isinstance(block, np.ndarray) else 0

@@ -1,0 +1,127 @@
+/** @file The page: reads its data, shows the first frame, and draws anew whatever changes. */
+
+import { coloursNow } from "./colours.js";
+import { Chosen, listenToCurve, listenToDrawn, listenToSections, listenToTime, listenToView } from "./controls.js";
+import { drawCurve } from "./curve.js";
+import { readData } from "./data.js";
+import { instant, short, written } from "./digits.js";
+import { by, made } from "./elements.js";
+import { Player } from "./player.js";
+import { drawMachine } from "./stage.js";
+import { NumberTable } from "./table.js";
+import { View } from "./view.js";
+
+const MANY_CELLS = 400; // beyond, numbers are written less often while the machine plays
+const PAUSE = 120; // ms between these
+
+/** What stands above and below: the run, what is to be known of it. */
+function tellRun(data) {
+  by("run").textContent = `heun ${data.version}${data.file ? `  ·  ${data.file}` : ""}`;
+  const accuracy = data.about.find(([label]) => label === "accuracy");
+  by("accuracy").textContent = accuracy ? `Stated accuracy: ${accuracy[1]}.` : "";
+  by("told").replaceChildren(...data.told.map((sentence) => made("li", sentence)));
+  for (const [label, text] of data.about) by("lines").append(made("dt", label), made("dd", text));
+}
+
+/** The signs of what is drawn, in words. */
+function signsOf(chosen, data) {
+  const parts = [];
+  const { choice, section, load } = chosen;
+  if (choice) {
+    if (choice.key === "foundation") parts.push("Arrow: the force of the machine on the ground.");
+    else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.");
+  }
+  if (section && load) {
+    const [unit, size] = data.length;
+    parts.push(`Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`);
+    const s = section.s?.[section.chosen ?? 0];
+    by("place").textContent = s === undefined ? "" : `s = ${short(s * size)} ${unit}`;
+  }
+  return parts.join(" ");
+}
+
+/** The instant in words. */
+function tellInstant(data, player) {
+  const { time, count } = data;
+  const span = time[count - 1] - time[0];
+  const text = `t = ${instant(time[player.frame], span)} s`;
+  const output = by("instant");
+  output.textContent = count > 1 ? `${text}  (frame ${player.frame + 1} of ${count})` : `${text}  (one instant)`;
+  output.dataset.value = String(time[player.frame]);
+  by("time").value = String(player.frame);
+  by("time").setAttribute("aria-valuetext", text);
+  by("play").textContent = player.playing ? "Halt" : "Play";
+  by("play").setAttribute("aria-pressed", String(player.playing));
+}
+
+/** What the curve shows at this frame, for those who do not see it. */
+function tellCurve(course, frame) {
+  const low = written(course.low[frame], course.style);
+  const high = written(course.high[frame], course.style);
+  const value = course.low === course.high ? low : `${low} to ${high}`;
+  by("curve").setAttribute("aria-label", `${course.label} over time; now ${value} ${course.unit}`);
+}
+
+/** Let the view fill its canvas, as soon as that has a size. */
+function fit(view) {
+  const { clientWidth: width, clientHeight: height } = by("machine");
+  Object.assign(view, { width, height });
+  view.fit();
+  return width > 0;
+}
+
+/** Begin. */
+function begin() {
+  const data = readData(by("data").textContent);
+  let waiting = false;
+  let written0 = 0;
+  let panel = null;
+  let fitted = false;
+  const colours = { now: coloursNow() };
+  const changed = () => {
+    if (!waiting) requestAnimationFrame(draw);
+    waiting = true;
+  };
+  const player = new Player(data.time, changed);
+  const view = new View(data.scene);
+  const chosen = new Chosen(data, changed);
+  const table = new NumberTable(by("numbers"), data);
+
+  function draw() {
+    waiting = false;
+    if (!fitted) fitted = fit(view);
+    const { frame, share } = player;
+    const { names, values, look, size, choice } = chosen;
+    drawMachine(by("machine"), data, view, { frame, share, names, values, look, size, choice, load: chosen.drawn }, colours.now);
+    if (data.count > 1 && chosen.course) {
+      panel = drawCurve(by("curve"), data, chosen.course, frame, colours.now);
+      tellCurve(chosen.course, frame);
+    }
+    const now = performance.now();
+    if (!player.playing || table.cells.length < MANY_CELLS || now - written0 > PAUSE) {
+      written0 = now;
+      table.show(frame);
+      by("signs").textContent = signsOf(chosen, data);
+      by("machine").setAttribute("aria-label", `${data.title}, at ${instant(data.time[frame], 0)} s`);
+    }
+    tellInstant(data, player);
+    document.documentElement.dataset.frame = String(frame);
+  }
+
+  tellRun(data);
+  by("caption").textContent = data.count > 1 ? "Numbers of this frame" : "Numbers of this instant";
+  listenToView(view, player, changed);
+  listenToTime(data, player);
+  listenToDrawn(chosen, changed);
+  listenToSections(chosen, changed);
+  listenToCurve(chosen, player, changed, () => panel);
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {
+    colours.now = coloursNow();
+    changed();
+  });
+  new ResizeObserver(changed).observe(by("machine"));
+  draw();
+  player.show(0);
+}
+
+begin();

@@ -1,0 +1,89 @@
+"""A solved scene as one page that moves: what is drawn, the numbers beside it, and what is said of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from heuncli.foreign_text import shown
+from heuncli.page.cuts import sections_of
+from heuncli.page.frames import MOST, PageFrames, frames_of
+from heuncli.page.geometry import scene_of
+from heuncli.page.inlined import whole_page
+from heuncli.page.number_rows import blocks_of, blow_of
+from heuncli.page.packing import packed
+from heuncli.records import replace
+from heuncli.report.digits import certainty
+from heuncli.report.heading import heading
+from heuncli.report.labels import labels_of
+from heuncli.report.table_plans import SECTIONS
+from heuncli.report.table_units import Units
+from heuncli.results import Array, Results
+from heuncli.scenery.machine import machine_of
+from heuncli.scenery.poses import poses_in
+from heuncli.study.ask.study import Study
+
+MOST_MARKS = 400  # events and blows on the time line
+
+
+def moving_page(study: Study, units: Units, most: int = MOST) -> str:
+    """The page of a study solved for motion and loads; most: of its frames."""
+    return whole_page(study.results.title, page_data(study, units, most))
+
+
+def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
+    """All that a page knows: plain data, arrays packed."""
+    frames = frames_of(study, most)
+    own, spec = study.results, study.spec
+    results = own if np.array_equal(frames.times, own.time) else study.resample(frames.times)
+    labels = replace(labels_of(spec), units=units)
+    certain = certainty(own, labels, study.magnitudes)
+    horizon = own.accuracy.get("horizon")
+    return {
+        "title": shown(own.title),
+        "about": [[label, shown(text)] for label, text in heading(own)[1:]],
+        "version": own.version,
+        "file": shown(str(own.spec.get("path", ""))),
+        "told": [*frames.told, *_told(own, horizon)],
+        "horizon": horizon,
+        "count": len(frames.times),
+        "time": packed(frames.times),
+        "marks": list(_marks(own, frames)),
+        "length": list(units.of("m")),
+        "scene": scene_of(machine_of(spec), spec, results, poses_in(results)),
+        "blocks": blocks_of(results, labels, certain),
+        "blows": [block for k, blow in enumerate(own.impulses[:1]) for block in blow_of(k, blow, own, labels, certain)],
+        "sections": sections_of(spec, results, labels, certain),
+        "cutting": SECTIONS.heading(results, labels),
+        "foundation": _about(results),
+    }
+
+
+def _told(results: Results, horizon: float | None) -> Iterator[str]:
+    """What is to be known before the numbers are read."""
+    if horizon is not None:
+        yield f"The motion is known up to t = {horizon:.6g} s: nothing beyond is claimed, and nothing of it is here."
+    if any(joint.get("open") for joint in results.joints.values()):
+        yield "Open: redundant supports leave some numbers open; they are told as such, and have no arrow."
+
+
+def _about(results: Results) -> list[float] | None:
+    """The point about which the foundation's moment is told [m]."""
+    about: Array | None = results.foundation.get("about")
+    return None if about is None else [float(component) for component in np.asarray(about)]
+
+
+def _marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
+    """Blows and events within the frames: what and when, and the frame that is at that instant or next after it."""
+    found = [(float(blow["time"]), ", ".join(blow["names"]) or "blow") for blow in results.impulses]
+    for name, event in results.events.items():
+        words = event.get("to", ())
+        for k, at in enumerate(np.asarray(event["time"]).tolist()):
+            found.append((float(at), name + ("" if k >= len(words) or words[k] else " ends")))
+    first, last = float(frames.times[0]), float(frames.times[-1])
+    for at, words in sorted(found)[:MOST_MARKS]:
+        if first <= at <= last:
+            frame = min(int(np.searchsorted(frames.times, at)), len(frames.times) - 1)
+            yield {"frame": frame, "time": at, "words": shown(str(words))}

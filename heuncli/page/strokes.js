@@ -1,0 +1,87 @@
+/** @file What is drawn in pixels on top of a machine: lines, arrows, words. */
+
+/** The font of all words on canvases. */
+export const FONT = '12px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif';
+const HEAD = 9;
+
+/** A polyline. @param {number[][]} points */
+export function polyline(pen, points, colour, width = 1.5, dash = []) {
+  pen.beginPath();
+  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  pen.strokeStyle = colour;
+  pen.lineWidth = width;
+  pen.setLineDash(dash);
+  pen.stroke();
+  pen.setLineDash([]);
+}
+
+/** A closed shape. @param {number[][]} points */
+export function shape(pen, points, fill, line, width = 1.5) {
+  pen.beginPath();
+  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  pen.closePath();
+  pen.fillStyle = fill;
+  pen.fill();
+  pen.strokeStyle = line;
+  pen.lineWidth = width;
+  pen.stroke();
+}
+
+/** A ring. */
+export function ring(pen, x, y, radius, fill, line, width = 1.6) {
+  pen.beginPath();
+  pen.arc(x, y, radius, 0, 2 * Math.PI);
+  pen.fillStyle = fill;
+  pen.fill();
+  pen.strokeStyle = line;
+  pen.lineWidth = width;
+  pen.stroke();
+}
+
+/** Words with a rim of the ground's colour, so that they can be read on anything. */
+export function words(pen, text, x, y, colour, paper, align = "left") {
+  pen.font = FONT;
+  pen.textAlign = align;
+  pen.textBaseline = "middle";
+  pen.lineJoin = "round";
+  pen.lineWidth = 3.5;
+  pen.strokeStyle = paper;
+  pen.strokeText(text, x, y);
+  pen.fillStyle = colour;
+  pen.fillText(text, x, y);
+}
+
+/**
+ * An arrow, with two heads where it is a moment.
+ * @param {number[]} from @param {number[]} to on the screen [pixels]; near: toward the viewer [pixels]
+ */
+export function arrow(pen, from, to, toward, colour, paper, heads = 1, dash = []) {
+  const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+  const length = Math.hypot(dx, dy);
+  if (length < 4) {
+    if (Math.abs(toward) >= 8) endOn(pen, from, toward, colour, paper);
+    return;
+  }
+  const [ux, uy] = [dx / length, dy / length];
+  const head = Math.min(HEAD, 0.6 * length);
+  const neck = [to[0] - 0.8 * head * ux, to[1] - 0.8 * head * uy];
+  polyline(pen, [from, neck], paper, 5);
+  polyline(pen, [from, neck], colour, 2.4, dash);
+  for (let k = 0; k < heads; k += 1) {
+    const [x, y] = [to[0] - 0.75 * k * head * ux, to[1] - 0.75 * k * head * uy];
+    const [bx, by] = [x - head * ux, y - head * uy];
+    const w = 0.42 * head;
+    shape(pen, [[x, y], [bx - w * uy, by + w * ux], [bx + w * uy, by - w * ux]], colour, paper, 0.8);
+  }
+}
+
+/** An arrow that is seen from its head (a dot) or from its tail (a cross). */
+function endOn(pen, [x, y], toward, colour, paper) {
+  ring(pen, x, y, 7, paper, colour, 2.2);
+  if (toward > 0) {
+    ring(pen, x, y, 2.2, colour, colour, 1);
+  } else {
+    polyline(pen, [[x - 4.5, y - 4.5], [x + 4.5, y + 4.5]], colour, 2);
+    polyline(pen, [[x - 4.5, y + 4.5], [x + 4.5, y - 4.5]], colour, 2);
+  }
+}

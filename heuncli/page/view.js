@@ -1,0 +1,121 @@
+/** @file From where the machine is seen: a direction, a scale, a shift; parallel projection. */
+
+import { cross, dot, unit } from "./vectors.js";
+
+const STEEPEST = Math.PI / 2;
+const NEAREST = 400;
+const FARTHEST = 0.1;
+
+/** The world axis nearest to a direction. @param {number[]} v @returns {number[]} */
+function nearestAxis(v) {
+  const k = [0, 1, 2].reduce((best, i) => (Math.abs(v[i]) > Math.abs(v[best]) ? i : best), 2);
+  return [0, 1, 2].map((i) => (i === k ? Math.sign(v[k]) || 1 : 0));
+}
+
+/** Whether most joints lie on the far side of the machine, seen against its normal. */
+function behind(scene, normal) {
+  const places = [...scene.ground.map((point) => point.at), ...scene.joints.filter((j) => j.a < 0).map((j) => j.p)];
+  const mean = places.reduce((sum, at) => sum + dot(at, normal), 0) / (places.length || 1);
+  return places.length > 0 && mean < dot(scene.center, normal) - 0.02 * scene.radius;
+}
+
+/** The view: up stays up on the screen; azimuth and elevation [rad] tell from where one looks. */
+export class View {
+  /** @param {object} scene */
+  constructor(scene) {
+    this.center = scene.center;
+    this.radius = scene.radius;
+    this.up = nearestAxis(scene.gravity.some((g) => g !== 0) ? scene.gravity.map((g) => -g) : [0, 0, 1]);
+    const normal = scene.normal && nearestAxis(scene.normal);
+    if (!scene.gravity.some((g) => g !== 0) && normal && Math.abs(normal[2]) === 1) this.up = [0, 1, 0];
+    const k = this.up.findIndex((u) => u !== 0);
+    const axis = (i) => [0, 1, 2].map((j) => (j === (k + i) % 3 ? 1 : 0));
+    [this.first, this.second] = this.up[k] > 0 ? [axis(1), axis(2)] : [axis(2), axis(1)];
+    this.normal = normal;
+    this.half = scene.half;
+    this.behind = normal !== null && behind(scene, normal);
+    this.width = 100;
+    this.height = 100;
+    this.begin();
+  }
+
+  /** As at the start: a little from the side of the plane in which the machine moves. */
+  begin() {
+    if (this.normal && Math.abs(dot(this.normal, this.up)) < 0.5) {
+      this.along(this.normal.map(Math.abs));
+      if (this.behind === dot(this.normal, this.toward) > 0) this.turn(Math.PI, 0);
+      this.turn(-0.4, 0.28);
+    } else {
+      this.azimuth = -1.05;
+      this.elevation = this.normal ? 1 : 0.36;
+      this.turn(0, 0);
+    }
+    this.fit();
+  }
+
+  /** All of the machine at all frames within the screen, in the middle. */
+  fit() {
+    this.shift = [0, 0];
+    this.zoom = 1;
+    const reach = (v) => [0, 1, 2].reduce((sum, i) => sum + this.half[i] * Math.abs(v[i]), 0) + 0.05 * this.radius;
+    const [wide, high] = [reach(this.right), reach(this.above)];
+    const room = Math.min((this.width - 60) / (2 * wide), (this.height - 60) / (2 * high));
+    this.zoom = Math.min(NEAREST, Math.max(FARTHEST, room / this.scale));
+  }
+
+  /** Seen along a world axis, so that the axes to the right and up are positive. @param {number[]} axis */
+  along(axis) {
+    const level = Math.abs(dot(axis, this.up)) < 0.5;
+    const right = level ? cross(this.up, axis) : null;
+    const toward = right && right.some((r) => r < 0) ? axis.map((c) => -c) : axis;
+    this.elevation = level ? 0 : STEEPEST;
+    this.azimuth = level ? Math.atan2(dot(toward, this.second), dot(toward, this.first)) : -Math.PI / 2;
+    this.turn(0, 0);
+  }
+
+  /** Turned on. @param {number} aside [rad] @param {number} up [rad] */
+  turn(aside, up) {
+    this.azimuth += aside;
+    this.elevation = Math.min(STEEPEST, Math.max(-STEEPEST, this.elevation + up));
+    const [c, s] = [Math.cos(this.azimuth), Math.sin(this.azimuth)];
+    const [ce, se] = [Math.cos(this.elevation), Math.sin(this.elevation)];
+    this.toward = [0, 1, 2].map((i) => ce * (c * this.first[i] + s * this.second[i]) + se * this.up[i]);
+    this.right = [0, 1, 2].map((i) => -s * this.first[i] + c * this.second[i]);
+    this.above = unit(cross(this.toward, this.right));
+  }
+
+  /** Nearer by a factor, about a place on the screen [pixels]. */
+  magnify(factor, x = this.width / 2, y = this.height / 2) {
+    const zoom = Math.min(NEAREST, Math.max(FARTHEST, this.zoom * factor));
+    const real = zoom / this.zoom;
+    this.zoom = zoom;
+    const [cx, cy] = [x - this.width / 2, y - this.height / 2];
+    this.shift = [cx + (this.shift[0] - cx) * real, cy + (this.shift[1] - cy) * real];
+  }
+
+  /** Shifted on the screen [pixels]. */
+  move(x, y) {
+    this.shift = [this.shift[0] + x, this.shift[1] + y];
+  }
+
+  /** Pixels of a metre. */
+  get scale() {
+    return (0.43 * Math.min(this.width, this.height) * this.zoom) / this.radius;
+  }
+
+  /** A world point on the screen: right, down [pixels], and how near it is [m]. @param {number[]} p */
+  project(p) {
+    const d = [p[0] - this.center[0], p[1] - this.center[1], p[2] - this.center[2]];
+    const s = this.scale;
+    return [
+      this.width / 2 + this.shift[0] + s * dot(d, this.right),
+      this.height / 2 + this.shift[1] - s * dot(d, this.above),
+      dot(d, this.toward),
+    ];
+  }
+
+  /** A world direction on the screen, for one metre: right, down [pixels], and toward the viewer [m]. */
+  direct(v) {
+    return [this.scale * dot(v, this.right), -this.scale * dot(v, this.above), dot(v, this.toward)];
+  }
+}

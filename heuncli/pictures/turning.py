@@ -1,0 +1,111 @@
+"""How a run turns: the angle that it turns in, and its last whole cycle where the motion comes back.
+
+A cycle is one turn or two, as of four-stroke engines. Whether the motion comes back is seen by the cycle before, at the
+same angles; a run that does not, or that has no more than one, is seen as a whole.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli.joint_kinds import JOINTS
+from heuncli.named_tuples import NamedTuple
+from heuncli.results import Array
+from heuncli.spec.models import Spec
+from heuncli.spec.names import GROUND
+from heuncli.study.ask.curves import numbers_at
+from heuncli.study.ask.study import Study
+
+TURN = 2.0 * math.pi
+SAME = 2e-3  # of the largest vector: a pixel of the picture
+COMPARED = 128  # angles of a cycle at which it is held against the one before
+ALMOST = 1e-6  # of a turn: a run that was to end with it
+VectorsAt = Callable[[Array], Array]  # of instants (n,) what is looked at there, (n, ...)
+
+
+class Turning(NamedTuple):
+    """The instants of a run that are seen, its angle if it turns on in one, and how many turns come back (0: none)."""
+
+    times: Array
+    path: str
+    angles: Array
+    turns: int
+
+    @property
+    def counted(self) -> Array:
+        """The angles in degrees, of a cycle that comes back counted from its own zero."""
+        found = np.degrees(self.angles)
+        if self.turns:
+            whole = 360.0 * self.turns
+            found = found - whole * math.floor(float(min(found[0], found[-1])) / whole + ALMOST)
+        return np.asarray(found)
+
+    @property
+    def in_words(self) -> str:
+        """What of the run is seen."""
+        span = f"t = {self.times[0]:.6g} to {self.times[-1]:.6g} s"
+        if not self.turns:
+            return f"the whole run, {span}"
+        return f"the last {'turn' if self.turns == 1 else 'two turns'} of {self.path}, {span}"
+
+
+def angles_of(spec: Spec) -> list[str]:
+    """The angles in which a scene may turn, as paths: driven ones, else those against the ground, else all."""
+    turning = {name: joint for name, joint in spec.joints.items() if "angle" in JOINTS[joint.kind].coordinates}
+    driven = [drive.joint for drive in spec.drives.values() if drive.joint in turning]
+    grounded = [name for name, joint in turning.items() if GROUND in (joint.a, joint.b)]
+    return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
+
+
+def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> Turning:
+    """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
+    whole = Turning(times, "", np.zeros(0), 0)
+    for path in candidates:
+        angles = numbers_at(study, path, times)
+        if np.isfinite(angles).all() and (goes_on(angles) and span(angles) > span(whole.angles)):
+            whole = Turning(times, path, angles, 0)
+    for turns in (1, 2):
+        if whole.path and comes_back(study, whole, turns, vectors_at):
+            return last_of(study, whole, turns)
+    return whole
+
+
+def goes_on(angles: Array) -> bool:
+    """Whether angles rise or fall all the time."""
+    steps = np.diff(angles)
+    return bool((steps >= 0.0).all() or (steps <= 0.0).all())
+
+
+def span(angles: Array) -> float:
+    """From the first to the last."""
+    return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
+
+
+def comes_back(study: Study, whole: Turning, turns: int, vectors_at: VectorsAt) -> bool:
+    """Whether the last so many turns are as those before them."""
+    angle = TURN * turns
+    if span(whole.angles) < 2.0 * angle - ALMOST * TURN:
+        return False
+    sign = 1.0 if whole.angles[-1] > whole.angles[0] else -1.0
+    back = sign * angle * np.linspace(1.0, 0.0, COMPARED)
+    last, before = (vectors_at(instants_at(whole, whole.angles[-1] - back - k * sign * angle)) for k in (0, 1))
+    size = float(np.nanmax(np.abs(last), initial=0.0))
+    return bool(np.nanmax(np.abs(last - before), initial=0.0) <= SAME * size)
+
+
+def last_of(study: Study, whole: Turning, turns: int) -> Turning:
+    """The last so many turns of a run."""
+    sign = 1.0 if whole.angles[-1] > whole.angles[0] else -1.0
+    begin = float(instants_at(whole, np.array([whole.angles[-1] - sign * TURN * turns]))[0])
+    even = np.linspace(begin, whole.times[-1], len(whole.times))
+    times = np.unique(np.concatenate([even, whole.times[whole.times > begin]]))
+    return Turning(times, whole.path, numbers_at(study, whole.path, times), turns)
+
+
+def instants_at(turning: Turning, angles: Array) -> Array:
+    """The instants at which a run has some angles, on the line between those at which it was seen, (n,)."""
+    order = slice(None) if turning.angles[-1] > turning.angles[0] else slice(None, None, -1)
+    return np.asarray(np.interp(angles, turning.angles[order], turning.times[order]))
