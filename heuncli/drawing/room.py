@@ -42,7 +42,7 @@ class WordBox(NamedTuple):
         )  # fmt: skip
 
 
-class Field:
+class WordField:
     """The cells of a rectangle; fine: the size of one, (across, down)."""
 
     def __init__(self, box: WordBox, fine: tuple[float, float]) -> None:

@@ -30,7 +30,7 @@ class Pictured:
     study: Study
 
 
-class Course(NamedTuple):
+class NumberCourse(NamedTuple):
     """A number over some instants (n,): its path, its SI unit, its stated error, its lowest and highest."""
 
     path: str
@@ -59,20 +59,20 @@ def instants(study: Study) -> Array:
     return np.asarray(found if horizon is None else found[found < horizon])
 
 
-def jumps_of(course: Course) -> Array:
+def jumps_of(course: NumberCourse) -> Array:
     """The instants at which a course jumps by what is seen: its values on the two sides of one differ."""
     step = np.abs(np.diff(course.values))
     seen = step > JUMP * (course.high.value - course.low.value)
     return np.asarray(course.times[:-1][sides_of_jumps(course.times) & seen])
 
 
-def course_of(study: Study, path: str, times: Array) -> Course:
+def course_of(study: Study, path: str, times: Array) -> NumberCourse:
     """The course of a number, of a vector its magnitude. Raises NotOneNumber, SpecError [unknown-path]."""
     require_one_number(study, path)
     low, high = (peak(study, path, how) for how in ("min", "max"))
     values = values_at(study, path, times)
     error = error_of(MeasureRequest("abs", path), high, study)
-    return Course(path, unit_of(path, study.spec), times, values, error, low, high)
+    return NumberCourse(path, unit_of(path, study.spec), times, values, error, low, high)
 
 
 def require_one_number(study: Study, path: str) -> None:

@@ -1,4 +1,4 @@
-"""Measured points over a history: squares, or where there are many a line through all their peaks."""
+"""MeasuredPoints points over a history: squares, or where there are many a line through all their peaks."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ MOST_SPOTS = 150  # points that are told apart; more are drawn as a line
 SEEN = 1000  # stretches of a long line, in each of which its least and its greatest are drawn
 
 
-class Measured(NamedTuple):
+class MeasuredPoints(NamedTuple):
     """Points that were measured, (n,): over what a panel shows, in SI, and of which unit."""
 
     name: str
@@ -23,7 +23,7 @@ class Measured(NamedTuple):
     y: Array
 
 
-def seen(points: Measured, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
+def seen(points: MeasuredPoints, pen: int, size_x: float, size_y: float) -> Iterator[Item]:
     """Squares, or where there are many a thin line through them; sizes: from SI to the units that are shown."""
     x, y = size_x * points.x, size_y * points.y
     if len(x) <= MOST_SPOTS:

@@ -14,7 +14,7 @@ from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.expressions.units import NUMBER, Dimension, describe, parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.number_range import are_in_range, out_of_range
-from heuncli.pictures.measured_points import Measured
+from heuncli.pictures.measured_points import MeasuredPoints
 from heuncli.results import Array
 from heuncli.results_schema import counted
 from heuncli.spec.columns import CsvError, NoColumn, columns_of, layout_of, rows_of
@@ -49,7 +49,7 @@ def asked_points(words: str) -> AskedPoints:
     return AskedPoints(words, file, columns[0].strip(), columns[1].strip())
 
 
-def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
+def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> MeasuredPoints:
     """The points, for a picture over x_unit whose panels have some units, the first of which takes what has none.
 
     Raises SpecError with the place.
@@ -71,7 +71,7 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> Measured:
     up = _in_si(asked, asked.y, columns[1].unit, y, units)
     for values in (over[1], up[1]):
         _require_in_range(asked, values, text)
-    return Measured(f"{asked.file}: {asked.y}", up[0], over[1], up[1])
+    return MeasuredPoints(f"{asked.file}: {asked.y}", up[0], over[1], up[1])
 
 
 def _column(asked: AskedPoints, word: str, heads: Sequence[str]) -> CsvColumn:
