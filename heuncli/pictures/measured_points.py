@@ -1,4 +1,4 @@
-"""MeasuredPoints points over a history: squares, or where there are many a line through all their peaks."""
+"""Measured points over a history: squares, or where there are many a line through all their peaks."""
 
 from __future__ import annotations
 
