@@ -102,12 +102,12 @@ class Edges(NamedTuple):
         moves = np.ptp(s, axis=0) > 0.0
         return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
 
-    def passes(self, places: Array) -> Mask:
-        """Between which neighbouring instants a load passes places (k,), (n_t - 1, k)."""
+    def passes(self, places: Array, near: float) -> Mask:
+        """Between which neighbouring instants a load passes places (k,), or comes so near to them, (n_t - 1, k)."""
         found = np.zeros((len(self.s) - 1, len(places)), dtype=bool)
         for s in self.s.T:
             low, high = np.minimum(s[:-1], s[1:]), np.maximum(s[:-1], s[1:])
-            found |= (low[:, None] <= places) & (places <= high[:, None])
+            found |= (low[:, None] - near <= places) & (places <= high[:, None] + near)
         return found
 
     def pass_over(self, places: Array, side: Array, low: Array, high: Array) -> None:
@@ -272,7 +272,7 @@ class WholeBar:
             else:
                 cuts = laid(self.stretch.asked, s, side)
                 values = self.study.reports_at(times, SECTIONS, replace(self.setup, cuts=(cuts,))).sections[self.name]
-                smooth = smooth & ~moving.passes(s)
+                smooth = smooth & ~moving.passes(s, self.near)
             found = [bounds_of(times, values[name], smooth, self.error(name)) for name in RESULTANTS]
             if all(own.fine for own in found) or len(times) > MOST:
                 break

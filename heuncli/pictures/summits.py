@@ -1,8 +1,8 @@
 """The lowest and the highest of many curves over the instants of a run, from their values at some of these.
 
 The instants bracket every summit. About a sample that is higher than its neighbours a curve is taken for the parabola
-through the three of them, which errs by the square of what it adds to the sample (of a sine of size 1, c to c² / 2):
-where it adds more than a picture could do without, more instants are wanted.
+through the three of them. Of a sine of size 1 it adds up to c = step² / 8 to the sample, and errs by 3/2 c²: where it
+adds much, more instants are wanted.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Mask
 
-ADDED = 0.03  # of the largest value: what a parabola may add; a thousandth is then left, a seventh of a pixel
+ADDED = 0.03  # of the largest value: what a parabola may add: 1.4 thousandths are then left, a fifth of a pixel
 
 
 class Bounds(NamedTuple):

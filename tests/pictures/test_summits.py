@@ -1,4 +1,4 @@
-"""The bounds of curves from samples: to the square of what a parabola adds, over no jump, of what is known alone."""
+"""The bounds of curves from samples: to what a parabola leaves, over no jump, of what is known alone."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ def sines(times: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("step", [0.05, 0.2, 0.4])
-def test_summits_are_known_to_the_square_of_what_was_added(step: float) -> None:
+def test_summits_are_known_to_three_halves_of_the_square_of_what_is_added(step: float) -> None:
     times = np.arange(0.0, 12.0, step)
     found = bounds_of(times, sines(times), smooth=np.ones((len(times) - 1, 50), dtype=bool), error=0.0)
     added = step**2 / 8.0
     assert found.fine
-    assert np.abs(found.high - 1.0).max() <= added**2
-    assert np.abs(found.low + 1.0).max() <= added**2
+    assert np.abs(found.high - 1.0).max() <= 1.5 * added**2
+    assert np.abs(found.low + 1.0).max() <= 1.5 * added**2
     assert np.abs(sines(times).max(axis=0) - 1.0).max() > 0.5 * added, "the samples alone would not do"
 
 
