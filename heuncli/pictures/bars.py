@@ -231,7 +231,7 @@ class WholeBar:
     def reaches(self) -> dict[str, Reach]:
         """All quantities along the bar over the run, up to its horizon."""
         times = instants(self.study)
-        whole = self._searched(times)
+        whole = self._searched()
         marked = [one for both in whole.values() for one in both]
         lines = {at: self.at(at) for at in extremes.distinct(np.array([one.at for one in marked])).tolist()}
         s, low, high = self._bounds(times, [one.s for one in marked])
@@ -240,7 +240,7 @@ class WholeBar:
             for i, (name, both) in enumerate(whole.items())
         }
 
-    def _searched(self, times: Array) -> dict[str, tuple[Extreme, Extreme]]:
+    def _searched(self) -> dict[str, tuple[Extreme, Extreme]]:
         """The lowest and the highest of each quantity along the bar and over the run, searched between all of it."""
         errors = np.array([self.error(name) for name in RESULTANTS])
 
@@ -249,6 +249,8 @@ class WholeBar:
 
         searched = ColumnSearch(no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
         sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
+        times, horizon = self.study.search_times, self.study.results.accuracy.get("horizon")
+        times = times if horizon is None else times[times < horizon]
         found = sampled.placed(extremes.search(sampled.columns, times, sampled.groups, errors=errors))
         rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
         return {
