@@ -37,6 +37,7 @@ ROOM = (0.08, 0.04)  # of a panel's width and height: nearer to other words none
 HEADINGS = (0.2, 0.55, 0.9)  # of a curve's points: where its direction is shown
 HEADING, WIDE = 14.0, 700.0  # pixels: how long such an arrow is, and how wide a panel may be
 JUMP = 0.01  # of a panel's width: what is drawn as a jump
+EQUAL = 1e-9  # of the largest vector: no larger than others that differ by less
 THRUST = 1e-6  # of the largest vector: what stands across the plane and is worth a note
 
 
@@ -64,13 +65,17 @@ class TipCurve(NamedTuple):
 
 
 class Largest(NamedTuple):
-    """The largest vector: its two parts, its magnitude in the plane and its stated error, its instant."""
+    """The largest vector: its two parts, its magnitude in the plane and its stated error, its instant.
+
+    steady: whether all are as large.
+    """
 
     x: float
     y: float
     size: float
     error: float
     at: float
+    steady: bool
 
 
 def polar(
@@ -150,7 +155,9 @@ def _largest(curve: TipCurve) -> Largest | None:
         return None
     vector = vectors_at(study, curve.path, np.array([at]))[0]
     x, y = float(vector @ plane.right), float(vector @ plane.up)
-    return Largest(x, y, math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error, at)
+    size, error = math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error
+    least = float(np.nanmin(np.hypot(curve.x, curve.y)))
+    return Largest(x, y, size, error, at, size - least <= max(error, EQUAL * size))
 
 
 def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
@@ -196,7 +203,7 @@ def _curve(
     yield Trace(curve.name, *_broken(curve.turning.times, x, y, sides[0].high - sides[0].low), curve.pen)
     unit_a_pixel = max((sides[0].high - sides[0].low) / WIDE, (sides[1].high - sides[1].low) / HEIGHT)
     yield from _headings(x, y, curve.pen, HEADING * unit_a_pixel)
-    if largest is not None and largest.size > 0.0:
+    if largest is not None and largest.size > 0.0 and not largest.steady:
         yield Arrow(0.0, 0.0, size * largest.x, size * largest.y, curve.pen)
         text = f"{certain(size * largest.size, size * largest.error)} {unit}"
         yield Spot(size * largest.x, size * largest.y, text, curve.pen, "circle", filled=True)
@@ -269,11 +276,12 @@ def _called(source: Pictured) -> str:
 def _axes_in_words(axes: str, curves: Sequence[TipCurve]) -> str:
     """Whose loads these are, in which axes."""
     joints = [curve for curve in curves if curve.path.startswith("joints.")]
-    on = "of a joint: what `from` exerts ON `to`; of the foundation: ON it; "
+    told = ["of a joint: what `from` exerts ON `to`"] if joints else []
+    told += ["of the foundation: ON it"] if any(curve.path.startswith("foundation.") for curve in curves) else []
     if axes == "world" or not joints:
-        return f"{on}world axes"
+        return "; ".join([*told, "world axes"])
     bodies = {_body_of(curve, axes) for curve in joints}
-    return f"{on}joints in the axes of {', '.join(sorted(bodies))} (`{axes}`)"
+    return "; ".join([*told, f"joints in the axes of {', '.join(sorted(bodies))} (`{axes}`)"])
 
 
 def _body_of(curve: TipCurve, axes: str) -> str:
@@ -288,14 +296,8 @@ def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[s
     if largest is None:
         yield f"{curve.name}: open or not known, and not drawn"
         return
-    first, second = curve.plane.names
-    when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
-    if curve.turning.path:
-        angle = float(np.interp(largest.at, curve.turning.times, curve.turning.counted))
-        whole = 360.0 * curve.turning.turns
-        when += f", {curve.turning.path} = {_degrees(angle, whole)}"
-    way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    yield f"{curve.name}: largest {certain(size * largest.size, size * largest.error)} {unit} {way}, {when}"
+    told = f"{certain(size * largest.size, size * largest.error)} {unit}"
+    yield f"{curve.name}: {f'{told} all along' if largest.steady else f'largest {told} {_where(curve, largest)}'}"
     along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
     if along > THRUST * largest.size:
         yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
@@ -310,3 +312,15 @@ def _degrees(angle: float, whole: float) -> str:
     """An angle to four digits, of a circle or a cycle within that; whole: 0 where it is counted on."""
     told = float(f"{angle % whole if whole else angle:.4g}")
     return f"{0.0 if whole and told >= whole else told:g}°"
+
+
+def _where(curve: TipCurve, largest: Largest) -> str:
+    """The direction, the instant and the crank's angle of the largest."""
+    first, second = curve.plane.names
+    way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
+    when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
+    turning = curve.turning
+    if turning.path:
+        angle = float(np.interp(largest.at, turning.times, turning.counted))
+        when += f", {turning.path} = {_degrees(angle, 360.0 * turning.turns)}"
+    return f"{way}, {when}"
