@@ -35,8 +35,11 @@ def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
     panels = []
     for quantity in NAMES:
         some = [source for source in sources if quantity in source.found.orders]
-        high = max((_largest(source.found, quantity) for source in some), default=0.0)
-        panels += [_panel(source, quantity, high, units) for source in some]
+        high: dict[str, float] = {}
+        for source in some:
+            unit = unit_of(source.found, quantity)
+            high[unit] = max(high.get(unit, 0.0), _largest(source.found, quantity))
+        panels += [_panel(source, quantity, high[unit_of(source.found, quantity)], units) for source in some]
     words = [*(sentence for source in sources for sentence in _words(source)), BARS]
     left = any(source.found.counterbalance is not None for source in sources)
     legend = [("as it is", PEN), (LEFT, PEN_LEFT)] if left else []
