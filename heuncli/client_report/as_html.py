@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.client_report.parts import (
-    Cell,
     Chapter,
     ClientReport,
     Drawing,
     Facts,
-    Grid,
     Listing,
     Part,
+    ReportCell,
+    ReportTable,
     Sentence,
     Verbatim,
 )
@@ -53,7 +53,7 @@ def escaped(text: str) -> str:
     return escaped_for_xml(shown(text)).replace('"', "&quot;").replace("'", "&#39;")
 
 
-def element(tag: str, content: str = "", **attributes: str) -> str:
+def element(tag: str, content: str = "", /, **attributes: str) -> str:
     """An element of content that is markup already; attributes are escaped here, `class_` is `class`."""
     given = "".join(
         f' {key.rstrip("_").replace("_", "-")}="{escaped(value)}"' for key, value in attributes.items() if value
@@ -90,7 +90,7 @@ def _listing(part: Listing) -> str:
     return title + element("ul", "".join(element("li", escaped(item)) for item in part.items))
 
 
-def _grid(part: Grid) -> str:
+def _grid(part: ReportTable) -> str:
     """A table; its head is repeated on every page that it goes over."""
     kinds = ["left" if column.align == "left" else "" for column in part.columns]
     heads = [element("th", escaped(column.head), scope="col", class_=kind)
@@ -106,7 +106,7 @@ def _grid(part: Grid) -> str:
     return element("div", caption + "\n" + table + (element("ul", notes, class_="notes") if notes else ""))
 
 
-def _row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
+def _row(row: Sequence[ReportCell] | str, kinds: Sequence[str]) -> str:
     if isinstance(row, str):
         name, _, rest = row.partition("  ")
         text = escaped(name) + (" " + element("small", escaped(rest)) if rest else "")
@@ -115,7 +115,7 @@ def _row(row: Sequence[Cell] | str, kinds: Sequence[str]) -> str:
     return element("tr", "".join(cells), class_="begins" if row[0].text else "")
 
 
-def _cell(cell: Cell, kind: str) -> str:
+def _cell(cell: ReportCell, kind: str) -> str:
     text = escaped(cell.text)
     kinds = " ".join(filter(None, (kind, "long" * (len(cell.text) > LONG))))
     return element("td", element("strong", text) if cell.governs else text, class_=kinds)
@@ -134,5 +134,5 @@ def _verbatim(part: Verbatim) -> str:
 
 
 WRITTEN: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _sentence, Facts: _facts, Listing: _listing, Grid: _grid, Drawing: _drawing, Verbatim: _verbatim,
+    Sentence: _sentence, Facts: _facts, Listing: _listing, ReportTable: _grid, Drawing: _drawing, Verbatim: _verbatim,
 }  # fmt: skip

@@ -7,13 +7,13 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from heuncli.client_report.parts import (
-    Cell,
     ClientReport,
     Drawing,
     Facts,
-    Grid,
     Listing,
     Part,
+    ReportCell,
+    ReportTable,
     Sentence,
     Verbatim,
 )
@@ -69,7 +69,7 @@ def _listing(part: Listing) -> str:
     return title + "\n".join(f"- {line(item)}" for item in part.items)
 
 
-def _grid(part: Grid) -> str:
+def _grid(part: ReportTable) -> str:
     """A table under its heading; a line across is a row with a bold first cell."""
     name, _, rest = part.caption.partition("  ")
     blocks = [f"### {line(name)}", *([line(rest)] if rest else [])]
@@ -88,7 +88,7 @@ def _across(row: str) -> str:
     return f"**{escaped(name)}**" + (f" {escaped(rest)}" if rest else "")
 
 
-def _cell(cell: Cell) -> str:
+def _cell(cell: ReportCell) -> str:
     return f"**{escaped(cell.text)}**" if cell.governs and cell.text else escaped(cell.text)
 
 
@@ -107,5 +107,5 @@ def _verbatim(part: Verbatim) -> str:
 
 
 WRITTEN: dict[type[Part], Callable[[Any], str]] = {
-    Sentence: _sentence, Facts: _facts, Listing: _listing, Grid: _grid, Drawing: _drawing, Verbatim: _verbatim,
+    Sentence: _sentence, Facts: _facts, Listing: _listing, ReportTable: _grid, Drawing: _drawing, Verbatim: _verbatim,
 }  # fmt: skip

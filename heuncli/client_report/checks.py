@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.client_report.parts import Cell, Grid, Part, Sentence
+from heuncli.client_report.parts import Part, ReportCell, ReportTable, Sentence
 from heuncli.client_report.reported import AS_IT_STANDS, Reported
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.outcomes import Outcome
@@ -23,12 +23,12 @@ def check_parts(of: Reported) -> list[Part]:
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
     rows = [_row(of, outcome, cases=cases) for outcome in of.outcomes]
     failed = [f"{outcome.name}: {outcome.failure}" for outcome in of.outcomes if outcome.failure is not None]
-    return [Grid("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
+    return [ReportTable("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
 
 
-def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[Cell]:
+def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[ReportCell]:
     """The cells of one; what fails stands out."""
-    verdict = Cell(HOLDS if outcome.passed else FAILS, not outcome.passed)
-    case = [Cell(outcome.case or AS_IT_STANDS)] if cases else []
+    verdict = ReportCell(HOLDS if outcome.passed else FAILS, not outcome.passed)
+    case = [ReportCell(outcome.case or AS_IT_STANDS)] if cases else []
     words = (outcome.of, unit_of(outcome.of, of.spec), outcome.when, outcome.expected, outcome.found, outcome.allowed)
-    return [Cell(str(outcome.line)), *case, *map(Cell, words), verdict]
+    return [ReportCell(str(outcome.line)), *case, *map(ReportCell, words), verdict]

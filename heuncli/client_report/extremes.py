@@ -19,7 +19,7 @@ LEAST, GREATEST = "least", "greatest"
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
 
 
-class End(NamedTuple):
+class ReachedExtreme(NamedTuple):
     """An extreme of one case: its value in SI or the word in its place, its instant, and where it is along a run."""
 
     value: float | str
@@ -33,8 +33,8 @@ class Ends(NamedTuple):
     parts_open: whether it is open at some of the instants.
     """
 
-    low: End
-    high: End
+    low: ReachedExtreme
+    high: ReachedExtreme
     error: float
     unit: str
     parts_open: bool
@@ -58,7 +58,7 @@ def ends_of(run: ReportedRun, path: str) -> Ends | None:
     )
 
 
-def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> End:
+def _placed(end: ReachedExtreme, run: ReportedRun, path: str, which: Callable[[Array], np.intp]) -> ReachedExtreme:
     """An extreme along a run of cuts with its place; of one that is the same at all instants no place is kept."""
     if end.place is not None or not isinstance(end.value, float):
         return end
@@ -73,8 +73,8 @@ def _placed(end: End, run: ReportedRun, path: str, which: Callable[[Array], np.i
 
 
 def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
-    low = End(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
-    high = End(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
+    low = ReachedExtreme(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
+    high = ReachedExtreme(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
     is_open = OPEN in (*lowest.values.values(), *highest.values.values())
     parts = is_open and isinstance(low.value, float) and isinstance(high.value, float)
     return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts)
@@ -140,7 +140,7 @@ def instant_text(at: float | None, run: ReportedRun) -> str:
     return write_times([at], float(np.ptp(times)))[0]
 
 
-class Spread(NamedTuple):
+class GreatestOfCases(NamedTuple):
     """A number over all cases, ready to be told in a sentence; high: the highest, None where it is not known."""
 
     name: str
@@ -167,7 +167,7 @@ class Spread(NamedTuple):
         return "".join(f", {part}" for part in parts)
 
 
-def spread_of(of: Reported, path: str, name: str) -> Spread | None:
+def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
     """The highest of a number over all cases; None where no case has it, or it is 0 in all."""
     found = {run.name: ends for run in of.runs if (ends := ends_of(run, path)) is not None}
     known = {case: ends for case, ends in found.items() if isinstance(ends.high.value, float)}
@@ -182,7 +182,7 @@ def spread_of(of: Reported, path: str, name: str) -> Spread | None:
         return None
     steady = ends.high.place is None and is_steady(ends, how, size)
     at = "" if steady else instant_text(ends.high.at, run)
-    return Spread(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
+    return GreatestOfCases(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
 
 
 def runs_in(of: Reported, path: str) -> Iterator[tuple[ReportedRun, Ends]]:

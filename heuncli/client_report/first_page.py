@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.client_report.extremes import Spread, spread_of
-from heuncli.client_report.parts import Facts, Part, Sentence
+from heuncli.client_report.extremes import GreatestOfCases, spread_of
+from heuncli.client_report.parts import Facts, Part, Sentence, some
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
 from heuncli.report.impulse_tables import sizes_of
 from heuncli.report.plurals import count
 from heuncli.version import VERSION
-
-MOST_NAMED = 8
 
 
 def first_page(of: Reported) -> list[Part]:
@@ -77,7 +75,7 @@ def _checked(of: Reported) -> Iterator[Sentence]:
     """How many expectations hold."""
     failed = [outcome for outcome in of.outcomes if not outcome.passed]
     if failed:
-        names = _some([outcome.name for outcome in failed])
+        names = some([outcome.name for outcome in failed])
         total = len(of.outcomes)
         yield Sentence(f"{len(failed)} of {count(total, 'check')} of the spec FAIL: {names}.", "bad")
     elif of.outcomes:
@@ -97,7 +95,7 @@ def _used(of: Reported) -> Iterator[Sentence]:
     what = f"Largest utilisation of strength{_known(of, 'sections')}"
     text = f"{what}: {most.high_text()} in section {most.name}{most.where}."
     if beyond:
-        yield Sentence(f"{text} Beyond strength: {_some(beyond)}.", "bad")
+        yield Sentence(f"{text} Beyond strength: {some(beyond)}.", "bad")
     else:
         yield Sentence(text, "unsure" if _known(of, "sections") else "good")
 
@@ -108,7 +106,7 @@ def _known(of: Reported, block: str) -> str:
     return " that is known" if is_open else ""
 
 
-def _of_sections(of: Reported, quantity: str) -> list[Spread]:
+def _of_sections(of: Reported, quantity: str) -> list[GreatestOfCases]:
     names = of.runs[0].results.sections
     found = [spread_of(of, f"sections.{name}.stress.{quantity}", name) for name in names]
     return [spread for spread in found if spread is not None]
@@ -143,7 +141,7 @@ def _open(of: Reported) -> Iterator[Sentence]:
     paths = list(dict.fromkeys(path for run in of.runs for path in run.kept.open))
     if paths:
         text = f"{count(len(paths), 'component')} of loads are open: the supports are redundant, and rigid bodies do"
-        yield Sentence(f"{text} not say how they share ({_some(paths)}).", "unsure")
+        yield Sentence(f"{text} not say how they share ({some(paths)}).", "unsure")
     chosen = dict.fromkeys(run.results.model["split"] for run in of.runs if run.results.model.get("split"))
     for words in chosen:
         yield Sentence(f"What redundant supports leave open was split: {words}; other splits do as well.", "unsure")
@@ -160,10 +158,5 @@ def _warned(of: Reported) -> Iterator[Sentence]:
             if text not in read:
                 told.setdefault(text, []).append(run.name)
     for text, names in told.items():
-        case = f" (case {_some(names)})" if any(names) else ""
+        case = f" (case {some(names)})" if any(names) else ""
         yield Sentence(f"Warning: {text}{case}", "unsure")
-
-
-def _some(names: Sequence[str]) -> str:
-    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return ", ".join(names[:MOST_NAMED]) + rest

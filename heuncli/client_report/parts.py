@@ -9,6 +9,7 @@ from heuncli.drawing.figure import Figure
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.text_table import TextColumn, TextTable
 
+MOST_NAMED = 8
 Mood = Literal["plain", "good", "bad", "unsure"]
 
 
@@ -32,19 +33,19 @@ class Listing(NamedTuple):
     items: Sequence[str]
 
 
-class Cell(NamedTuple):
+class ReportCell(NamedTuple):
     """A cell of a table; governs: whether no other of its kind is larger."""
 
     text: str
     governs: bool = False
 
 
-class Grid(NamedTuple):
+class ReportTable(NamedTuple):
     """A table: its columns, its rows of cells, and what is said below. A row that is a text is a line across."""
 
     caption: str
     columns: Sequence[TextColumn]
-    rows: Sequence[Sequence[Cell] | str]
+    rows: Sequence[Sequence[ReportCell] | str]
     notes: Sequence[str] = ()
 
 
@@ -61,7 +62,7 @@ class Verbatim(NamedTuple):
     text: str
 
 
-Part = Sentence | Facts | Listing | Grid | Drawing | Verbatim
+Part = Sentence | Facts | Listing | ReportTable | Drawing | Verbatim
 
 
 class Chapter(NamedTuple):
@@ -80,7 +81,13 @@ class ClientReport(NamedTuple):
     chapters: Sequence[Chapter]
 
 
-def grid_of(table: TextTable, caption: str | None = None) -> Grid:
+def grid_of(table: TextTable, caption: str | None = None) -> ReportTable:
     """A table as `heun run` prints it; caption: in the place of its heading."""
-    rows = [row if isinstance(row, str) else tuple(map(Cell, row)) for row in table.rows]
-    return Grid(table.heading if caption is None else caption, table.columns, rows, table.notes)
+    rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]
+    return ReportTable(table.heading if caption is None else caption, table.columns, rows, table.notes)
+
+
+def some(names: Sequence[str]) -> str:
+    """The first of some names, and how many more there are."""
+    rest = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
+    return ", ".join(names[:MOST_NAMED]) + rest

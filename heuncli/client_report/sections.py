@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from heuncli.client_report.cases_table import cases_table, timed
 from heuncli.client_report.extremes import (
     Ends,
     governing,
@@ -14,8 +15,8 @@ from heuncli.client_report.extremes import (
     style_of,
     text_of,
 )
-from heuncli.client_report.load_table import LoadGroup, LoadRow, grid, timed
-from heuncli.client_report.parts import Cell, Drawing, Grid, Part
+from heuncli.client_report.load_groups import LoadGroup, LoadNumber
+from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured
@@ -69,7 +70,7 @@ def _extremes(of: Reported, names: list[str]) -> Iterator[Part]:
         groups = [_group(of, name) for name in names if ("s" in sections[name]) == along]
         if groups:
             caption = SECTIONS.heading(of.runs[0].results, of.labels)
-            yield grid(of, caption, groups, along=along)
+            yield cases_table(of, caption, groups, along=along)
 
 
 def _group(of: Reported, name: str) -> LoadGroup:
@@ -77,11 +78,11 @@ def _group(of: Reported, name: str) -> LoadGroup:
     own = [(quantity, f"sections.{name}.{quantity}") for quantity in RESULTANTS]
     own += [(quantity, f"sections.{name}.stress.{quantity}") for quantity in STRESSES]
     rows = [
-        LoadRow(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
+        LoadNumber(quantity.replace("_", " "), path, FAMILIES.get(quantity, "stress"), quantity in MAGNITUDES)
         for quantity, path in own
         if any(True for _ in runs_in(of, path))
     ]
-    return LoadGroup(f"{name}  {SECTIONS.note(name, of.labels)}", rows)
+    return LoadGroup(name, SECTIONS.note(name, of.labels), rows)
 
 
 class UsedSection(NamedTuple):
@@ -101,14 +102,14 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
     most = max(map(_size, found))
     pa, m = of.units.of("Pa")[0], of.units.of("m")[0]
     heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if of.has_cases else [])]
-    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else []), TextColumn(f"mises [{pa}]")]
-    heads += [TextColumn(f"± [{pa}]"), TextColumn(f"strength [{pa}]"), TextColumn("utilisation")]
+    heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else [])]
+    heads += [TextColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
     rows = [_cells(of, one, found, most=_size(one) == most) for one in found]
     notes = [SHARE, SAFE, MOST_USED] if any(one.used is not None for one in found) else [SAFE]
-    yield Grid("STRESS  the largest of each section", heads, rows, notes)
+    yield ReportTable("STRESS  the largest of each section", heads, rows, notes)
 
 
-def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[Cell]:
+def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[ReportCell]:
     """The line of a section."""
     size = of.units.of("Pa")[1]
     how = style_of([each.mises for each in found], of.runs[0], size)
@@ -117,14 +118,16 @@ def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bo
     steady = end.place is None and is_steady(one.mises, how, size)
     strength = one.run.study.spec.sections[one.name].strength
     return [
-        Cell(one.name),
-        *([Cell(one.run.told)] if of.has_cases else []),
-        Cell(place_text(end.place, of.units, named=False)),
-        *([Cell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
-        Cell(text_of(one.mises.high.value, how, size)),
-        Cell(rough(one.mises.error * size)),
-        Cell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
-        Cell("" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None),
+        ReportCell(one.name),
+        *([ReportCell(one.run.told)] if of.has_cases else []),
+        ReportCell(place_text(end.place, of.units, named=False)),
+        *([ReportCell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
+        ReportCell(text_of(one.mises.high.value, how, size)),
+        ReportCell(rough(one.mises.error * size)),
+        ReportCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
+        ReportCell(
+            "" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None
+        ),
     ]
 
 

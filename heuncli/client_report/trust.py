@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.client_report.parts import Cell, Facts, Grid, Listing, Part, Sentence
+from heuncli.client_report.parts import Facts, Listing, Part, ReportCell, ReportTable, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import rough
@@ -39,7 +39,7 @@ def trust_parts(of: Reported) -> list[Part]:
     return [*parts, _errors(of)]
 
 
-def _errors(of: Reported) -> Grid:
+def _errors(of: Reported) -> ReportTable:
     """The stated errors of all kinds, the largest of all cases."""
     found: dict[tuple[str, str], tuple[float, str]] = {}
     for run in of.runs:
@@ -49,9 +49,16 @@ def _errors(of: Reported) -> Grid:
     rows = []
     for (kind, unit), (error, case) in found.items():
         shown, size = of.units.of(unit)
-        rows.append([Cell(kind), Cell(shown), Cell(rough(error * size)), *([Cell(case)] if of.has_cases else [])])
+        rows.append(
+            [
+                ReportCell(kind),
+                ReportCell(shown),
+                ReportCell(rough(error * size)),
+                *([ReportCell(case)] if of.has_cases else []),
+            ]
+        )
     heads = [TextColumn("of", "left"), TextColumn("unit", "left"), TextColumn("±")]
-    return Grid("STATED ERRORS  of all numbers of a kind", [*heads, *([CASE] if of.has_cases else [])], rows)
+    return ReportTable("STATED ERRORS  of all numbers of a kind", [*heads, *([CASE] if of.has_cases else [])], rows)
 
 
 def _of_loads(run: ReportedRun) -> dict[tuple[str, str], float]:

@@ -1,7 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
 Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps; each line: what, error, time; memory: megabytes; growth: counts.
+variants, sweeps, reports; each line: what, error, time; memory: megabytes; growth: counts.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -47,6 +47,7 @@ from tests.bench.long import long
 from tests.bench.memory import memory
 from tests.bench.pipeline import pipeline
 from tests.bench.reduced import reduced
+from tests.bench.reports import reports
 from tests.bench.sweeps import sweeps
 from tests.bench.variants import variants
 
@@ -209,6 +210,7 @@ PARTS = {
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
+    "reports": lambda: reports(median_ms),
 }  # fmt: skip
 
 if __name__ == "__main__":

@@ -13,6 +13,7 @@ from heuncli.cli.options import (
     TOLERANCE,
     VIEW,
     WIDTH,
+    WITHOUT,
     Option,
 )
 from heuncli.named_tuples import NamedTuple
@@ -53,6 +54,7 @@ class PlotRequest(NamedTuple):
     tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
         False
     )
+    without: Annotated[tuple[str, ...], WITHOUT] = ()
     width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()

@@ -1,0 +1,77 @@
+"""Which numbers a table of loads tells: of each joint, support and load, by the plans of the tables of `heun run`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from heuncli.client_report.reported import Reported
+from heuncli.named_tuples import NamedTuple
+from heuncli.report.table_blocks import FAMILIES, short
+from heuncli.report.table_plans import TablePlan
+from heuncli.results import Results
+from heuncli.results_schema import MAGNITUDES, XYZ
+
+WHOLE = {"force": "|F|", "moment": "|M|"}  # of a vector
+TOTAL = "total"  # of the foundation
+
+
+class LoadNumber(NamedTuple):
+    """A number of the results: its label, its path, and to which family of numbers it belongs.
+
+    even: a magnitude, of which the least governs nothing; vector: of which it is a component or the magnitude.
+    """
+
+    label: str
+    path: str
+    family: str
+    even: bool = False
+    vector: str = ""
+
+
+class LoadGroup(NamedTuple):
+    """The numbers of one thing, by its name, and what is said beside that."""
+
+    name: str
+    note: str
+    rows: Sequence[LoadNumber]
+
+
+def groups_of(of: Reported, plan: TablePlan) -> Iterator[LoadGroup]:
+    """What there is of a kind, each with its numbers."""
+    results = of.runs[0].results
+    for name, prefix in _things(results, plan):
+        rows = list(_rows(of, prefix, plan.quantities))
+        if rows:
+            yield LoadGroup(name, plan.note(name, of.labels), rows)
+
+
+def _things(results: Results, plan: TablePlan) -> Iterator[tuple[str, str]]:
+    """The names of a kind of results with what their paths begin with."""
+    block = getattr(results, plan.kind)
+    if not plan.of_foundation:
+        yield from ((name, f"{plan.kind}.{name}") for name in block)
+        return
+    yield TOTAL, "foundation"
+    for part, word in (("supports", "support"), ("elements", "element")):
+        yield from ((f"{word} {name}", f"foundation.{part}.{name}") for name in block.get(part, {}))
+
+
+def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[LoadNumber]:
+    """The numbers of one thing: of a vector its components and its magnitude."""
+    numbers = of.runs[0].kept.numbers
+    for quantity in quantities:
+        path, family = f"{prefix}.{quantity}", FAMILIES.get(quantity, quantity)
+        parts = [f"{path}.{axis}" for axis in XYZ]
+        vector = all(part in numbers for part in parts)
+        for axis, part in zip(XYZ, parts, strict=True):
+            if vector:
+                yield LoadNumber(short(f"{quantity}.{axis}"), part, family, vector=path)
+        if vector:
+            yield LoadNumber(WHOLE[quantity], path, family, even=True, vector=path)
+        elif path in numbers:
+            yield LoadNumber(quantity, path, family, quantity in MAGNITUDES)
+
+
+def without_components(group: LoadGroup) -> LoadGroup:
+    """A group of which the magnitudes of vectors are told alone."""
+    return group._replace(rows=[row for row in group.rows if row.even or not row.vector])

@@ -1,0 +1,26 @@
+"""The time and the size of `heun report`: of an engine, of a car in its load cases, of a crane with sections."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from heuncli.client_report.as_html import as_html
+from heuncli.client_report.as_markdown import as_markdown
+from heuncli.client_report.contents import report_of
+from heuncli.commands.reporting.cases import reported
+from heuncli.commands.reporting.request import ReportRequest
+
+SPECS = Path(__file__).parents[2] / "specs"
+NAMES = ("engine", "axle_loads", "crane_load")
+
+
+def reports(median_ms: Callable[[Callable[[], Any], int], float]) -> None:
+    """Print them; median_ms: of a call that is repeated so often [ms]."""
+    for name in NAMES:
+        request = ReportRequest(spec=str(SPECS / f"{name}.yaml"), quiet=True)
+        took = median_ms(lambda request=request: as_html(report_of(reported(request))), 5)  # type: ignore[misc]
+        report = report_of(reported(request))
+        sizes = len(as_html(report)) / 1e3, len(as_markdown(report)) / 1e3
+        print(f"report {name:12} {took:6.0f} ms; page {sizes[0]:.0f} kB, markdown {sizes[1]:.0f} kB")

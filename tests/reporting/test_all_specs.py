@@ -1,0 +1,54 @@
+"""Every worked example as a report: one solution, both forms; a page that nests, holds no script, and no nan."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from heuncli.client_report.as_html import as_html
+from heuncli.client_report.as_markdown import as_markdown
+from heuncli.client_report.contents import report_of
+from heuncli.client_report.reported import Reported
+from heuncli.commands.reporting.cases import reported
+from heuncli.commands.reporting.request import ReportRequest
+from tests.shared.page_reader import OURS, PageReader
+
+FOLDER = Path(__file__).parents[2] / "specs"
+NAMES = [pytest.param(path.stem, marks=pytest.mark.heavy) for path in sorted(FOLDER.glob("*.yaml"))]
+NO_NUMBER = re.compile(r"\b(nan|NaN|inf|Infinity|None)\b")
+UNIT = re.compile(r"\[[^\]]+\]")
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_reports_of_all_examples(name: str) -> None:
+    of = reported(ReportRequest(spec=str(FOLDER / f"{name}.yaml"), quiet=True))
+    report = report_of(of)
+    page, text = as_html(report), as_markdown(report)
+    read = PageReader(page)
+    assert read.tags <= OURS
+    assert len(read.ids) == len(set(read.ids))
+    assert all(link.removeprefix("#") in read.ids for link in read.links)
+    assert not [attribute for _, attribute in read.attributes if attribute.startswith("on")]
+    for written in (page.partition('id="spec"')[0].partition("</style>")[2], text.rpartition("\n## ")[0]):
+        assert not NO_NUMBER.search(written)
+    assert of.spec.title in read.by_tag["h1"][0]
+    for figure in read.by_tag.get("figure", []):
+        assert UNIT.search(figure)
+    every_line_of_the_spec_is_there(of, read, text)
+    assert all(outcome.passed for outcome in of.outcomes)  # as heun check finds, see tests/cli/test_specs.py
+
+
+def every_line_of_the_spec_is_there(of: Reported, read: PageReader, text: str) -> None:
+    lines = of.text.splitlines()
+    assert read.by_tag["code"] == lines
+    assert [line.split("  ", 1)[1] if "  " in line.strip() else "" for line in fenced_at_the_end(text)] == [
+        line.rstrip() for line in lines
+    ]
+
+
+def fenced_at_the_end(text: str) -> list[str]:
+    """The lines in the last fence, which are those of the spec."""
+    inside = text.rstrip().rpartition("\n```")[0].rpartition("```text\n")[2]
+    return inside.split("\n")

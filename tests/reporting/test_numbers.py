@@ -1,0 +1,147 @@
+"""What stands in a report is what `heun run` and `heun check` find: numbers, governing cases, verdicts."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from tests.shared.command import Heun
+from tests.shared.page_reader import PageReader
+
+SPECS = Path(__file__).parents[2] / "specs"
+COMPONENTS = {"F": "force", "M": "moment", "|F|": "force", "|M|": "moment"}
+
+
+def path_of(group: str, label: str, block: str) -> str:
+    """The path of a line of a table of loads."""
+    quantity = COMPONENTS.get(label, label)
+    if len(label) == 2 and label[0] in COMPONENTS and label[1] in "xyz":
+        quantity = f"{COMPONENTS[label[0]]}.{label[1]}"
+    if block == "joints":
+        return f"joints.{group.split()[0]}.{quantity}"
+    kind, *name = group.split()
+    part = {"total": "foundation", "support": "foundation.supports", "element": "foundation.elements"}[kind]
+    return ".".join([part, *name[:1], quantity])
+
+
+def close(text: str, number: float) -> bool:
+    """Whether a number is written so, rounded to the digits that are written."""
+    digits = len(text.partition(".")[2])
+    return abs(float(text) - number) <= 0.5000001 * 10.0**-digits
+
+
+@pytest.mark.heavy
+def test_extremes_of_a_motion_are_those_of_run(heun: Heun) -> None:
+    spec = str(SPECS / "engine.yaml")
+    read = PageReader(heun("report", spec, "-o", "-").stdout)
+    found: dict[str, tuple[str, str, str, str]] = {}
+    block = group = ""
+    tables = [row for row in read.rows if len(row) in (1, 7)]
+    for row in tables:
+        if row[:2] == ["", "unit"]:
+            block = "joints" if block else "foundation"
+        elif len(row) == 1:
+            group = row[0]
+        else:
+            found[path_of(group, row[0], block)] = (row[2], row[3], row[4], row[5])
+    assert len(found) > 20
+    asked = [f"{how} {path}" for path in [*found][::5] for how in ("min", "max")]
+    words = [word for one in asked for word in ("--measure", one)]
+    measured = json.loads(heun("run", spec, "--format", "json", *words, "-q").stdout)
+    for one, told in zip(asked, measured, strict=True):
+        low, low_at, high, high_at = found[one.split()[1]]
+        text, at = (low, low_at) if one.startswith("min") else (high, high_at)
+        assert close(text, told["value"]), one
+        assert not at or close(at, told["at"]), one
+
+
+def test_governing_cases_are_those_of_the_envelope(heun: Heun) -> None:
+    spec = str(SPECS / "axle_loads.yaml")
+    told = json.loads(heun("run", spec, "--case", "all", "--format", "json").stdout)
+    read = PageReader(heun("report", spec, "-o", "-").stdout)
+    lines = lines_of_joints(read)
+    assert len(lines) > 15
+    for (path, case), (text, _) in lines.items():
+        assert close(text, number_at(told["cases"][case], path)), (path, case)
+    for path in {path for path, _ in lines}:
+        bold = {case for (of, case), (_, is_bold) in lines.items() if of == path and is_bold}
+        envelope = told["envelope"][path]
+        signed = path.endswith((".x", ".y", ".z", ".axial"))
+        assert bold == {envelope["max"]["case"], *([envelope["min"]["case"]] if signed else [])}, path
+        values = {case: float(text) for (of, case), (text, _) in lines.items() if of == path}
+        assert close(lines[path, envelope["max"]["case"]][0], envelope["max"]["value"])
+        assert max(values.values()) == values[envelope["max"]["case"]]
+
+
+def number_at(result: Any, path: str) -> float:
+    """The number of a path at the one instant of a result; of a vector its magnitude."""
+    value, axis = result, None
+    for key in path.split("."):
+        if key in "xyz":
+            axis = "xyz".index(key)
+        else:
+            value = value[key]
+    value = value[0]
+    if isinstance(value, list):
+        return float(value[axis]) if axis is not None else math.hypot(*value)
+    return float(value)
+
+
+def lines_of_joints(read: PageReader) -> dict[tuple[str, str], tuple[str, bool]]:
+    """By path and case the number of a table of joints with cases, and whether it is bold."""
+    found: dict[tuple[str, str], tuple[str, bool]] = {}
+    heads = [k for k, row in enumerate(read.rows) if row[:3] == ["", "unit", "case"]]
+    group = label = ""
+    for k, row in enumerate(read.rows[heads[1] :], heads[1]):
+        if len(row) == 1:
+            group = row[0]
+        elif len(row) == 5 and row[2] != "case":
+            label = row[0] or label
+            found[path_of(group, label, "joints"), row[2]] = (row[3], (k, 3) in read.bold)
+        elif len(row) > 5:
+            break
+    return found
+
+
+def test_verdicts_are_those_of_check(heun: Heun) -> None:
+    spec = str(SPECS / "axle_loads.yaml")
+    told = json.loads(heun("check", spec, "--format", "json").stdout)["cases"]
+    read = PageReader(heun("report", spec, "-o", "-").stdout)
+    head = next(k for k, row in enumerate(read.rows) if row[-1] == "verdict")
+    rows = [row for row in read.rows[head + 1 :] if len(row) == len(read.rows[head])]
+    assert [(int(row[0]), row[1], row[2]) for row in rows] == [
+        (case["line"], case.get("case", "as it stands"), case["of"]) for case in told
+    ]
+    assert [row[-1] == "holds" for row in rows] == [case["passed"] for case in told]
+
+
+def test_what_fails_is_said_first_and_by_the_exit_code(heun: Heun) -> None:
+    done = heun("report", "failing.yaml", "-o", "-")
+    assert done.returncode == 1
+    read = PageReader(done.stdout)
+    assert "1 of 1 check of the spec FAIL: joints.pivot.force.z." in read.by_tag["header"][0]
+    assert any(row[-1] == "FAILS" for row in read.rows)
+
+
+def test_expectations_of_the_scene_without_its_cases_are_checked(heun: Heun, folder: Path) -> None:
+    text = (folder / "hanging.yaml").read_text()
+    text += "cases: {heavy: {set: {m: 2}}}\nexpect:\n  - {of: joints.pivot.force.z, is: 9.81}\n"
+    (folder / "cased.yaml").write_text(text)
+    assert heun("check", "cased.yaml").returncode == 1
+    done = heun("report", "cased.yaml", "-o", "-")
+    assert done.returncode == 1
+    verdicts = {row[1]: row[-1] for row in PageReader(done.stdout).rows if row[-1] in ("holds", "FAILS")}
+    assert verdicts == {"as it stands": "holds", "heavy": "FAILS"}
+    alone = heun("report", "cased.yaml", "-o", "-", "--case", "heavy")
+    assert "as it stands" not in alone.stdout
+
+
+def test_units_and_settings_are_told(heun: Heun) -> None:
+    done = heun("report", "hanging.yaml", "-o", "-", "--units", "kN,mm", "--set", "m=2", "--tolerance", "1e-8")
+    read = PageReader(done.stdout)
+    assert "--set m=2" in read.by_tag["header"][0] and "--tolerance 1e-08" in read.by_tag["header"][0]
+    assert ["Fz", "kN", "0.0196200"] in [row[:3] for row in read.rows]
