@@ -29,7 +29,7 @@ from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection, asked_by
 from heuncli.study.workflow import solve
-from heuncli.telling.keep import keep
+from heuncli.telling.keep import keep, looks_between
 from heuncli.telling.outcomes import Outcome, outcome_of
 
 BLOWS_ALONE = frozenset({"impulses"})
@@ -120,7 +120,8 @@ def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
     page = page_of(study.results, labels, study.magnitudes)
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
-    return ReportedRun(name, title, study, keep(study, wanted_of(study.spec)), page)
+    wanted = wanted_of(study.spec)
+    return ReportedRun(name, title, study, keep(study, wanted), page, looks_between(study, wanted))
 
 
 def _given(request: ReportRequest) -> Iterator[str]:
