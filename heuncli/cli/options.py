@@ -36,6 +36,9 @@ METHOD = Option(("--method",), "The method of integration; `heun methods` lists 
 STEP = Option(("--step",), "The step of a method of fixed step.", "SECONDS")
 TOLERANCE = Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")
 LEAST_NORM = Option(("--least-norm",), "Split what redundant supports leave open.")
+WITHOUT = Option(
+    ("--without",), "Leave out these forces, and hold these drives where they start. May be repeated.", "NAME,..."
+)
 NO_REDUCE = Option(("--no-reduce",), "Solve all of the scene, in full.")
 FORMATS = ("table", "json", "csv")  # of most commands
 FORMAT = Option(

@@ -266,9 +266,9 @@ def _bars(item: Bars, box: Box) -> Iterator[Shape]:
     step = float(np.diff(item.x).min()) if len(item.x) > 1 else 1.0
     half = min(0.3 * abs(box.x(step) - box.x(0.0)), 15.0)
     for x, y in box.points(item.x, item.y).tolist():
-        yield Area(
-            ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero)), own.colour, 0.85, shown(item.name)
-        )
+        if math.isfinite(y):
+            corners = ((x - half, zero), (x - half, y), (x + half, y), (x + half, zero))
+            yield Area(corners, own.colour, 0.85, shown(item.name))
 
 
 def _cells(item: Cells, box: Box) -> Iterator[Shape]:

@@ -6,11 +6,13 @@ dx = shift + turn × (x − x_c)      of a point x of a body, to the first order
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.linearisation.modes import SceneModes
 from heuncli.oscillations.study import looked_for, told
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
@@ -49,18 +51,19 @@ class MovedBodies:
         return bool(along.sum() <= HALF * shifts.sum() and about.sum() >= HALF * turns.sum())
 
 
-def moved_bodies(spec: Spec) -> MovedBodies:
-    """The modes of a spec, and how its bodies move. Raises SolveError as `modes` does."""
+def moved_bodies(spec: Spec, without: Sequence[str] = ()) -> MovedBodies:
+    """The modes of a spec, and how its bodies move; without: as of `modes`. Raises SolveError as that does."""
     with placed(spec):
         found = looked_for(spec)
         here, bodies = found.here, found.here.layout.mechanism.bodies
         order = np.array([here.layout.place[k] for k in range(len(bodies))], dtype=np.intp)
         own = here.found
-        shapes = np.array([mode.shape for mode in found.modes], dtype=complex).reshape(len(found.modes), -1)
-        twists = np.einsum("bin,mn->mbi", own.twists[order], shapes) if len(shapes) else np.zeros((0, len(bodies), 6))
+        twists = np.zeros((len(found.modes), len(bodies), 6), dtype=complex)
+        for k, mode in enumerate(found.modes):
+            twists[k] = own.twists[order] @ mode.shape
         attitudes, centres = own.attitudes[order], own.centres[order]
         inside = np.array([body.center for body in bodies]).reshape(-1, 3)
         return MovedBodies(
-            here.scene, told(spec, found), tuple(body.name for body in bodies),
+            here.scene, replace(told(spec, found), without=tuple(without)), tuple(body.name for body in bodies),
             centres - np.einsum("bij,bj->bi", attitudes, inside), attitudes, centres, twists[..., :3], twists[..., 3:],
         )  # fmt: skip

@@ -1,7 +1,16 @@
-/** @file The colours of the page: those of its style, light or dark; of bodies tints that the colour-blind tell apart. */
+/** @file The colours of the page, those of its style, light or dark; of bodies tints that are told apart by all. */
 
 const NAMES = ["paper", "ink", "faint", "line", "panel", "accent", "positive", "negative", "force", "moment"];
-const HUES = [[205, 45], [28, 60], [160, 38], [325, 35], [48, 50], [265, 30], [190, 20], [95, 28]];
+const HUES = [
+  [205, 45],
+  [28, 60],
+  [160, 38],
+  [325, 35],
+  [48, 50],
+  [265, 30],
+  [190, 20],
+  [95, 28],
+];
 export const SHADES = 12;
 
 /** The colours now in force. @returns {Record<string, string> & {dark: boolean}} */
@@ -12,13 +21,25 @@ export function coloursNow() {
   return found;
 }
 
+const made = new Map();
+
 /** The colours of a body: shades from dark to bright, and one for its edges. @param {number} k @param {boolean} dark */
 export function tints(k, dark) {
+  const key = 2 * (k % HUES.length) + Number(dark);
+  if (!made.has(key)) made.set(key, mixed(k, dark));
+  return made.get(key);
+}
+
+function mixed(k, dark) {
   const [hue, rich] = HUES[k % HUES.length];
   const [low, high] = dark ? [24, 52] : [52, 88];
   const shades = [];
   for (let i = 0; i < SHADES; i += 1) {
     shades.push(`hsl(${hue} ${rich}% ${(low + ((high - low) * i) / (SHADES - 1)).toFixed(1)}%)`);
   }
-  return { shades, edge: `hsl(${hue} ${rich}% ${dark ? 78 : 27}%)`, bar: `hsl(${hue} ${rich + 8}% ${dark ? 55 : 58}%)` };
+  return {
+    shades,
+    edge: `hsl(${hue} ${rich}% ${dark ? 78 : 27}%)`,
+    bar: `hsl(${hue} ${rich + 8}% ${dark ? 55 : 58}%)`,
+  };
 }

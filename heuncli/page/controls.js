@@ -8,10 +8,15 @@ import { SPEEDS, speedFor } from "./player.js";
 import { arrowChoices } from "./wrenches.js";
 
 /** How opaque bodies are. */
-const LOOKS = [[1, "solid"], [0.35, "glass"], [0, "edges"]];
+const LOOKS = [
+  [1, "solid"],
+  [0.35, "glass"],
+  [0, "edges"],
+];
 const MANY_NAMES = 7;
-const MOST_BUTTONS = 16;
+const MOST_BUTTONS = 8;
 const STEP = 1.15;
+const TRIED = 12;
 const SIZES = 1.2; // by how much a step of the arrow size lengthens
 
 /** What is chosen on the page beside the frame. */
@@ -26,8 +31,12 @@ export class Chosen {
     this.values = true;
     this.look = 1;
     this.size = 1;
-    this.choice = this.choices[0] ?? null;
-    this.section = data.sections.find((section) => section.loads.length && section.s) ?? data.sections.find((section) => section.loads.length) ?? null;
+    const blow = data.count === 1 ? this.choices.find((choice) => choice.frame !== undefined) : null;
+    this.choice = blow ?? this.choices[0] ?? null;
+    this.section =
+      data.sections.find((section) => section.loads.length && section.s) ??
+      data.sections.find((section) => section.loads.length) ??
+      null;
     this.load = this.section && this.governing();
   }
 
@@ -41,6 +50,18 @@ export class Chosen {
   /** The load that is drawn, or null. */
   get drawn() {
     return this.section && this.load ? { section: this.section, load: this.load, cut: this.section.chosen ?? 0 } : null;
+  }
+
+  /** The path of the curve that is shown first: of a joint if one is known and varies, else of whatever does. */
+  telling() {
+    const joints = this.courses.filter((course) => course.path.startsWith("joints."));
+    const some = [...joints.slice(0, TRIED), ...this.courses.slice(0, TRIED)];
+    const found = some.find((course) => {
+      course.made ??= course.make();
+      const known = course.made.high.filter(Number.isFinite);
+      return known.length > 1 && known.some((value) => value !== known[0]);
+    });
+    return (found ?? some[0])?.path ?? "";
   }
 
   /** The curve of a path. @param {string} path */
@@ -62,21 +83,27 @@ function isOwn(event) {
 export function listenToView(view, player, changed) {
   const canvas = by("machine");
   listenToPointers(canvas, view, changed);
-  const act = (id, what) => by(id).addEventListener("click", () => {
-    what();
-    changed();
-  });
-  ["x", "y", "z"].forEach((name, k) => act(`view-${name}`, () => {
-    view.along([0, 1, 2].map((i) => (i === k ? 1 : 0)));
-    view.fit();
-  }));
+  const act = (id, what) =>
+    by(id).addEventListener("click", () => {
+      what();
+      changed();
+    });
+  ["x", "y", "z"].forEach((name, k) =>
+    act(`view-${name}`, () => {
+      view.along([0, 1, 2].map((i) => (i === k ? 1 : 0)));
+      view.fit();
+    }),
+  );
   act("view-oblique", () => view.begin());
   act("closer", () => view.magnify(STEP));
   act("farther", () => view.magnify(1 / STEP));
   const frames = player.time.length;
   const jumps = {
-    " ": () => player.toggle(), Home: () => player.halt(0), End: () => player.halt(frames - 1),
-    ",": () => player.halt(player.frame - 1), ".": () => player.halt(player.frame + 1),
+    " ": () => player.toggle(),
+    Home: () => player.halt(0),
+    End: () => player.halt(frames - 1),
+    ",": () => player.halt(player.frame - 1),
+    ".": () => player.halt(player.frame + 1),
   };
   document.addEventListener("keydown", (event) => {
     if (event.altKey || event.ctrlKey || event.metaKey || isOwn(event)) return;
@@ -98,7 +125,10 @@ export function listenToTime(data, player) {
   slider.addEventListener("input", () => player.halt(Number(slider.value)));
   by("ticks").append(...marks.map((mark) => made("option", "", { value: String(mark.frame) })));
   by("play").addEventListener("click", () => player.toggle());
-  fill(by("speed"), SPEEDS.map(([speed, label]) => [String(speed), label]));
+  fill(
+    by("speed"),
+    SPEEDS.map(([speed, label]) => [String(speed), label]),
+  );
   player.speed = speedFor(time[count - 1] - time[0]);
   by("speed").value = String(player.speed);
   by("speed").addEventListener("change", () => (player.speed = Number(by("speed").value)));
@@ -114,7 +144,7 @@ export function listenToTime(data, player) {
 }
 
 /** What is drawn on the machine. */
-export function listenToDrawn(chosen, changed) {
+export function listenToDrawn(chosen, player, changed) {
   const box = (id, field) => {
     by(id).checked = chosen[field];
     by(id).addEventListener("change", () => {
@@ -124,14 +154,19 @@ export function listenToDrawn(chosen, changed) {
   };
   box("names", "names");
   box("values", "values");
-  fill(by("bodies"), LOOKS.map(([opaque, label]) => [String(opaque), label]));
+  fill(
+    by("bodies"),
+    LOOKS.map(([opaque, label]) => [String(opaque), label]),
+  );
   by("bodies").addEventListener("change", () => {
     chosen.look = Number(by("bodies").value);
     changed();
   });
   fill(by("reactions"), [...chosen.choices.map((choice) => [choice.key, choice.label]), ["", "none"]]);
+  by("reactions").value = chosen.choice?.key ?? "";
   by("reactions").addEventListener("change", () => {
     chosen.choice = chosen.choices.find((choice) => choice.key === by("reactions").value) ?? null;
+    if (chosen.choice?.frame !== undefined) player.halt(chosen.choice.frame);
     changed();
   });
   by("size").addEventListener("input", () => {
@@ -144,7 +179,10 @@ export function listenToDrawn(chosen, changed) {
 export function listenToSections(chosen, changed) {
   const { sections } = chosen.data;
   by("cutting").hidden = !sections.length;
-  fill(by("section"), sections.map((section, k) => [String(k), section.name]));
+  fill(
+    by("section"),
+    sections.map((section, k) => [String(k), section.name]),
+  );
   const offer = () => {
     const { section } = chosen;
     const loads = section ? section.loads.map((load) => [load.label, load.label]) : [];
@@ -158,7 +196,9 @@ export function listenToSections(chosen, changed) {
   by("section").addEventListener("change", () => {
     const wanted = chosen.load?.label;
     chosen.section = sections[Number(by("section").value)];
-    chosen.load = wanted ? chosen.section.loads.find((load) => load.label === wanted) ?? chosen.governing() ?? null : null;
+    chosen.load = wanted
+      ? (chosen.section.loads.find((load) => load.label === wanted) ?? chosen.governing() ?? null)
+      : null;
     offer();
     changed();
   });
@@ -177,9 +217,11 @@ export function listenToSections(chosen, changed) {
 /** Which curve; a click into it goes to the frame there. @param {() => import("./curve.js").Panel|null} panel */
 export function listenToCurve(chosen, player, changed, panel) {
   const select = by("path");
-  fill(select, chosen.courses.map((course) => [course.path, course.label]));
-  const first = chosen.load?.path ?? chosen.courses.find((course) => course.path.startsWith("joints."))?.path;
-  chosen.setCourse(first ?? "");
+  fill(
+    select,
+    chosen.courses.map((course) => [course.path, course.label]),
+  );
+  chosen.setCourse(chosen.load?.path ?? chosen.telling());
   if (chosen.course) select.value = chosen.course.path;
   else by("over").hidden = true;
   select.addEventListener("change", () => {

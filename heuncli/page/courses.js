@@ -4,7 +4,8 @@ import { along } from "./loads.js";
 
 /**
  * @typedef {object} Course
- * @property {string} path @property {string} label @property {string} unit @property {import("./digits.js").Style} style
+ * @property {string} path of the number @property {string} label what it is called @property {string} unit shown
+ * @property {import("./digits.js").Style} style of its digits
  * @property {Float64Array} low in the unit shown @property {Float64Array} high the same, but of a run of cuts
  */
 
@@ -24,9 +25,13 @@ function ofRow(row, count) {
   };
   const parts = row.parts;
   if (parts.length === 1) return [course(row.path, row.path, (k) => parts[0].values[k])];
-  if (!row.sized) return parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k]));
+  if (!row.sized)
+    return parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k]));
   const size = course(row.path, `${row.path} (size)`, (k) => Math.hypot(...parts.map((part) => part.values[k])));
-  return [size, ...parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k]))];
+  return [
+    size,
+    ...parts.map((part) => course(`${row.path}.${part.name}`, `${row.path}.${part.name}`, (k) => part.values[k])),
+  ];
 }
 
 /** @param {object} section @param {object} load @param {number} count */
@@ -45,10 +50,10 @@ function ofLoad(section, load, count) {
     }
     return { path: load.path, label: load.path, unit: load.unit, style: load.style, low, high };
   };
-  return { path: load.path, label: section.s ? `${load.path} (least and greatest along it)` : load.path, make };
+  return { path: load.path, label: section.s ? `${load.path} (least, greatest)` : load.path, make };
 }
 
-/** All curves there are, made when they are asked for. @param {object} data @returns {{path, label, make: () => Course}[]} */
+/** All curves there are; each is made when it is asked for. @param {object} data */
 export function coursesOf(data) {
   const rows = data.blocks.flatMap((block) => block.groups.flatMap((group) => group.rows));
   return [

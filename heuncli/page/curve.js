@@ -65,16 +65,41 @@ function drawAxes(pen, panel, course, colours) {
   const up = ticks(panel.low, panel.high, 5);
   for (const tick of up) {
     const y = panel.y(tick);
-    polyline(pen, [[panel.left, y], [panel.right, y]], colours.line, tick === 0 ? 1.6 : 0.7);
+    polyline(
+      pen,
+      [
+        [panel.left, y],
+        [panel.right, y],
+      ],
+      colours.line,
+      tick === 0 ? 1.6 : 0.7,
+    );
     words(pen, told(tick, up), panel.left - 6, y, colours.ink, colours.panel, "right");
   }
   const across = ticks(panel.first, panel.first + panel.span, Math.max(2, Math.floor((panel.right - panel.left) / 80)));
   for (const tick of across) {
     const x = panel.x(tick);
-    polyline(pen, [[x, panel.bottom], [x, panel.bottom + 4]], colours.ink, 1);
+    polyline(
+      pen,
+      [
+        [x, panel.bottom],
+        [x, panel.bottom + 4],
+      ],
+      colours.ink,
+      1,
+    );
     words(pen, told(tick, across), x, panel.bottom + 13, colours.ink, colours.panel, "center");
   }
-  polyline(pen, [[panel.left, panel.top], [panel.left, panel.bottom], [panel.right, panel.bottom]], colours.ink, 1);
+  polyline(
+    pen,
+    [
+      [panel.left, panel.top],
+      [panel.left, panel.bottom],
+      [panel.right, panel.bottom],
+    ],
+    colours.ink,
+    1,
+  );
   words(pen, `[${course.unit === "1" ? "-" : course.unit}]`, panel.left - 6, 9, colours.ink, colours.panel, "right");
   words(pen, "t [s]", panel.right, panel.bottom + 26, colours.ink, colours.panel, "right");
 }
@@ -100,7 +125,15 @@ function drawPeak(pen, panel, time, course, highest, colours) {
   const [x, y] = [panel.x(time[k]), panel.y(value)];
   ring(pen, x, y, 3, colours.panel, colours.positive, 1.5);
   const right = x > (panel.left + panel.right) / 2;
-  words(pen, written(value, course.style), x + (right ? -6 : 6), y + (highest ? -9 : 9), colours.ink, colours.panel, right ? "right" : "left");
+  words(
+    pen,
+    written(value, course.style),
+    x + (right ? -6 : 6),
+    y + (highest || y > panel.bottom - 16 ? -9 : 9),
+    colours.ink,
+    colours.panel,
+    right ? "right" : "left",
+  );
 }
 
 /**
@@ -115,15 +148,43 @@ export function drawCurve(canvas, data, course, frame, colours) {
   drawAxes(pen, panel, course, colours);
   for (const mark of marks) {
     const x = panel.x(mark.time);
-    polyline(pen, [[x, panel.top], [x, panel.bottom]], colours.faint, 1, [3, 3]);
+    polyline(
+      pen,
+      [
+        [x, panel.top],
+        [x, panel.bottom],
+      ],
+      colours.faint,
+      1,
+      [3, 3],
+    );
     if (marks.length <= MOST_WORDS) words(pen, mark.words, x, panel.top - 9, colours.faint, colours.panel, "center");
   }
   drawValues(pen, panel, time, course.high, colours.positive, []);
   if (course.low !== course.high) drawValues(pen, panel, time, course.low, colours.negative, [6, 3]);
+  if (!course.high.some(Number.isFinite)) {
+    words(
+      pen,
+      "open throughout",
+      (panel.left + panel.right) / 2,
+      panel.top + 24,
+      colours.faint,
+      colours.panel,
+      "center",
+    );
+  }
   drawPeak(pen, panel, time, course, true, colours);
   drawPeak(pen, panel, time, course, false, colours);
   const x = panel.x(time[frame]);
-  polyline(pen, [[x, panel.top], [x, panel.bottom]], colours.accent, 1.5);
+  polyline(
+    pen,
+    [
+      [x, panel.top],
+      [x, panel.bottom],
+    ],
+    colours.accent,
+    1.5,
+  );
   for (const values of new Set([course.high, course.low])) {
     if (Number.isFinite(values[frame])) ring(pen, x, panel.y(values[frame]), 4, colours.accent, colours.panel, 1.5);
   }

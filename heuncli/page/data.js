@@ -44,13 +44,16 @@ export function readData(text) {
     body.attitudes = places(body.attitudes);
     body.lines = body.lines.map(places);
     for (const surface of body.surfaces) {
+      if (surface.ball) continue;
       surface.corners = places(surface.corners);
-      surface.edges = surface.edges.map(places);
       surface.faces = data.scene.topologies[surface.faces];
     }
   }
   data.rows = new Map();
-  const blocks = [...data.blocks.map((b) => [b, count]), ...data.blows.map((b) => [b, 1])];
+  const blocks = [
+    ...data.blocks.map((b) => [b, count]),
+    ...data.blows.flatMap((blow) => blow.blocks.map((b) => [b, 1])),
+  ];
   for (const [block, own] of blocks) {
     for (const group of block.groups) {
       for (const row of group.rows) {

@@ -42,7 +42,7 @@ export function instant(t, span) {
   return signed(text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text);
 }
 
-/** The largest of 1, 2, 5 times a power of ten that is not above a number > 0. @param {number} most @returns {number} */
+/** The largest of 1, 2, 5 times a power of ten that is not above a number > 0. @param {number} most */
 export function roundBelow(most) {
   const power = 10 ** Math.floor(Math.log10(most));
   return [5, 2, 1].find((step) => step * power <= most * (1 + 1e-9)) * power;

@@ -16,7 +16,7 @@ export function made(tag, text = "", given = {}) {
   return element;
 }
 
-/** Options of a select, in place of those that it has. @param {HTMLSelectElement} select @param {[string, string][]} options */
+/** Options of a select: value, words. @param {HTMLSelectElement} select @param {[string, string][]} options */
 export function fill(select, options) {
   select.replaceChildren(...options.map(([value, label]) => made("option", label, { value })));
 }

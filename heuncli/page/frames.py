@@ -6,12 +6,14 @@ Nothing is shown beyond the horizon. Blows and jumps have both of their sides.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from heuncli.integration.segments import limits_of
 from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.results import Array, Indices, Results
 from heuncli.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct
@@ -53,17 +55,50 @@ def frames_of(study: Study, most: int = MOST) -> PageFrames:
     return PageFrames(found, ())
 
 
+def results_at(study: Study, times: Array) -> Results:
+    """The results at the frames: where a frame was asked for they are those of the run to the last bit."""
+    own = study.results
+    if np.array_equal(times, own.time):
+        return own
+    found = study.resample(times)
+    there = np.flatnonzero(np.isin(times, own.time))
+    asked = np.searchsorted(own.time, times[there])
+    blocks = {block: _with(getattr(found, block), getattr(own, block), there, asked) for block in REPORT_OF}
+    return replace(found, **blocks)
+
+
+def _with(block: Any, own: Any, there: Indices, asked: Indices) -> Any:
+    """A block of results with some of the instants of another, of which it has more or fewer.
+
+    So an array whose length differs runs over the instants, and all others do not.
+    """
+    if isinstance(block, dict):
+        return {key: _with(value, own[key], there, asked) if key in own else value for key, value in block.items()}
+    if not isinstance(block, np.ndarray) or len(block) == len(own):
+        return block
+    made = block.copy()
+    made[there] = own[asked]
+    return made
+
+
 def _filled(study: Study, asked: Array, limit: int) -> Array:
     """The asked instants, and so many between each two of them that the motion can be followed."""
-    turns = turned_between(study.setup, study.history, asked) / TURNED
-    shares = np.diff(asked) / (asked[-1] - asked[0]) * LEAST
-    parts = np.clip(np.ceil(np.maximum(turns, shares)), 1, limit).astype(int) if len(asked) < LEAST else turns
-    parts = np.maximum(1, np.ceil(parts)).astype(int)
-    while int(parts.sum()) >= limit and parts.max() > 1:
-        parts = np.maximum(1, np.minimum(parts - 1, parts * (limit - 1) // int(parts.sum())))
+    wanted = turned_between(study.setup, study.history, asked) / TURNED
+    if len(asked) < LEAST:
+        wanted = np.maximum(wanted, np.diff(asked) / (asked[-1] - asked[0]) * LEAST)
+    parts = _parts(wanted, limit - 1)
     first = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
     return np.append(asked[first] + share * np.diff(asked)[first], asked[-1])
+
+
+def _parts(wanted: Array, most: int) -> Indices:
+    """Whole numbers (n,) from 1 on, not below those wanted as far as all together are at most so many."""
+    more = np.maximum(np.ceil(wanted) - 1.0, 0.0)
+    spare = most - len(wanted)
+    if more.sum() > spare:
+        more = np.floor(more * (spare / more.sum()))
+    return np.asarray(1 + more.astype(np.intp))
 
 
 def _with_sides(study: Study, times: Array, limit: int) -> Array:
@@ -74,7 +109,7 @@ def _with_sides(study: Study, times: Array, limit: int) -> Array:
     if not len(inside) or len(times) + 2 * len(inside) > limit:
         return times
     before, after = limits_of(inside)
-    return distinct(np.concatenate([times, before, after]))
+    return np.asarray(distinct(np.concatenate([times, before, after])))
 
 
 def _bytes_of_a_frame(study: Study) -> int:

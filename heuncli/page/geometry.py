@@ -1,7 +1,8 @@
-"""What a page draws of a machine: its bodies with their poses at all frames, joints, springs, cuts, how it is looked at."""
+"""What a page draws of a machine: its bodies with their poses at all frames, joints, springs; its reach."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from heuncli.results import Array, Results
 from heuncli.scenery.machine import GROUND, BodyLook, Machine
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.solids import Surface
-from heuncli.spec.models import Spec
+from heuncli.spec.models import Shape, Spec
 
 PARALLEL = 1e-6
 REACH_FRAMES = 60  # frames by which the reach of a motion is told
@@ -36,7 +37,7 @@ def scene_of(machine: Machine, spec: Spec, results: Results, poses: Poses) -> di
     """The scene as a page reads it; bodies are told by their numbers, the ground by -1."""
     number = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     kinds = Topologies()
-    bodies = [_body(body, results, kinds) for body in machine.bodies]
+    bodies = [_body(body, spec.bodies[body.name].shapes or (), results, kinds) for body in machine.bodies]
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
     return {
         "bodies": bodies,
@@ -63,25 +64,25 @@ def _triple(vector: Array) -> list[float]:
     return [float(component) for component in vector]
 
 
-def _body(body: BodyLook, results: Results, kinds: Topologies) -> dict[str, Any]:
+def _body(body: BodyLook, shapes: Sequence[Shape], results: Results, kinds: Topologies) -> dict[str, Any]:
     """A body: its poses, its surfaces or lines, its points, in its own axes."""
     pose = results.bodies[body.name]
+    seen = [shape for shape in shapes if shape.type != "point"]  # each has one surface
     return {
         "name": body.name,
         "places": drawn(pose["position"]),
         "attitudes": drawn(pose["quaternion"]),
-        "surfaces": [_surface(surface, kinds) for surface in body.surfaces],
+        "surfaces": [_surface(s, shape, kinds) for s, shape in zip(body.surfaces, seen, strict=True)],
         "lines": [drawn(line) for line in body.lines],
         "points": [{"name": name, "at": _triple(point)} for name, point in body.points.items()],
     }
 
 
-def _surface(surface: Surface, kinds: Topologies) -> dict[str, Any]:
-    return {
-        "corners": drawn(surface.corners),
-        "faces": kinds.number(surface.faces),
-        "edges": [drawn(edge) for edge in surface.edges],
-    }
+def _surface(surface: Surface, shape: Shape, kinds: Topologies) -> dict[str, Any]:
+    """Corners and faces; of a sphere no more than what it is: it is round from everywhere."""
+    if shape.type == "sphere":
+        return {"ball": {"center": _triple(np.array(shape.center)), "radius": float(shape.radius or 0.0)}}
+    return {"corners": drawn(surface.corners), "faces": kinds.number(surface.faces)}
 
 
 def corners_of(body: BodyLook) -> Array:

@@ -1,7 +1,8 @@
 """One page out of the files beside this: template, style, scripts and the data, which no name in a spec can leave.
 
-The scripts are modules of a browser, as they stand; here they become one: each a function that hands on what it exports,
-after those that it imports from. The page says by their digests which style and script it runs, so that nothing else in it is ever run.
+The scripts are modules of a browser, as they stand; here they become one: each a function that hands on what it
+exports, after those that it imports from. The page tells by their digests which style and script it runs: nothing else
+in it is ever run.
 """
 
 from __future__ import annotations

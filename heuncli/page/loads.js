@@ -1,4 +1,4 @@
-/** @file The load of a section, drawn on the moving body: across the bar along a run of cuts, an arrow at a single cut. */
+/** @file The load of a section on the moving body: across the bar along a run of cuts, an arrow at a single cut. */
 
 import { roundBelow, short, written } from "./digits.js";
 import { points, stands } from "./poses.js";
@@ -56,7 +56,10 @@ function piecesOf(cuts, values) {
 /** The diagram along a run of cuts. */
 function drawDiagram(pen, view, poses, section, load, frame, colours, metres) {
   const axis = section[DRAWN_ALONG[load.label] ?? "first"];
-  const off = view.direct(points(poses, section.body, axis)).slice(0, 2).map((c) => c * metres);
+  const off = view
+    .direct(points(poses, section.body, axis))
+    .slice(0, 2)
+    .map((c) => c * metres);
   for (const piece of piecesOf(section.cuts, along(section, load, frame))) {
     const positive = piece.reduce((sum, [, value]) => sum + value, 0) >= 0;
     const colour = positive ? colours.positive : colours.negative;
@@ -75,10 +78,23 @@ function drawDiagram(pen, view, poses, section, load, frame, colours, metres) {
     const middle = tops[Math.floor(tops.length / 2)];
     const foot = feet[Math.floor(tops.length / 2)];
     if (Math.hypot(middle[0] - foot[0], middle[1] - foot[1]) > 20) {
-      words(pen, positive ? "+" : "−", (middle[0] + foot[0]) / 2, (middle[1] + foot[1]) / 2, colour, colours.panel, "center");
+      words(
+        pen,
+        positive ? "+" : "−",
+        (middle[0] + foot[0]) / 2,
+        (middle[1] + foot[1]) / 2,
+        colour,
+        colours.panel,
+        "center",
+      );
     }
   }
-  polyline(pen, section.cuts.map((at) => view.project(stands(poses, section.body, at))), colours.ink, 1);
+  polyline(
+    pen,
+    section.cuts.map((at) => view.project(stands(poses, section.body, at))),
+    colours.ink,
+    1,
+  );
   return off;
 }
 
@@ -132,8 +148,33 @@ export function drawLoadScale(pen, view, { load, size }, colours, line) {
   const pixels = (HIGHEST * view.radius * size * view.scale) / largest(load) / load.size;
   const amount = roundBelow(90 / pixels);
   const [x, y] = [view.width - 14, view.height - 16 - 20 * line];
-  polyline(pen, [[x - amount * pixels, y], [x, y]], colours.positive, 2.2);
-  for (const end of [x - amount * pixels, x]) polyline(pen, [[end, y - 4], [end, y + 4]], colours.positive, 1.5);
+  polyline(
+    pen,
+    [
+      [x - amount * pixels, y],
+      [x, y],
+    ],
+    colours.positive,
+    2.2,
+  );
+  for (const end of [x - amount * pixels, x])
+    polyline(
+      pen,
+      [
+        [end, y - 4],
+        [end, y + 4],
+      ],
+      colours.positive,
+      1.5,
+    );
   const unit = load.unit === "1" ? "" : ` ${load.unit}`;
-  words(pen, `${load.label} ${short(amount)}${unit} =`, x - amount * pixels - 8, y, colours.positive, colours.panel, "right");
+  words(
+    pen,
+    `${load.label} ${short(amount)}${unit} =`,
+    x - amount * pixels - 8,
+    y,
+    colours.positive,
+    colours.panel,
+    "right",
+  );
 }

@@ -29,11 +29,14 @@ function signsOf(chosen, data) {
   const { choice, section, load } = chosen;
   if (choice) {
     if (choice.key === "foundation") parts.push("Arrow: the force of the machine on the ground.");
+    else if (choice.frame !== undefined) parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
     else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.");
   }
   if (section && load) {
     const [unit, size] = data.length;
-    parts.push(`Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`);
+    parts.push(
+      `Section ${section.name}: what the piece beyond the cut exerts on the part before it; N > 0 is tension.`,
+    );
     const s = section.s?.[section.chosen ?? 0];
     by("place").textContent = s === undefined ? "" : `s = ${short(s * size)} ${unit}`;
   }
@@ -62,21 +65,12 @@ function tellCurve(course, frame) {
   by("curve").setAttribute("aria-label", `${course.label} over time; now ${value} ${course.unit}`);
 }
 
-/** Let the view fill its canvas, as soon as that has a size. */
-function fit(view) {
-  const { clientWidth: width, clientHeight: height } = by("machine");
-  Object.assign(view, { width, height });
-  view.fit();
-  return width > 0;
-}
-
 /** Begin. */
 function begin() {
   const data = readData(by("data").textContent);
   let waiting = false;
   let written0 = 0;
   let panel = null;
-  let fitted = false;
   const colours = { now: coloursNow() };
   const changed = () => {
     if (!waiting) requestAnimationFrame(draw);
@@ -89,10 +83,15 @@ function begin() {
 
   function draw() {
     waiting = false;
-    if (!fitted) fitted = fit(view);
     const { frame, share } = player;
     const { names, values, look, size, choice } = chosen;
-    drawMachine(by("machine"), data, view, { frame, share, names, values, look, size, choice, load: chosen.drawn }, colours.now);
+    drawMachine(
+      by("machine"),
+      data,
+      view,
+      { frame, share, names, values, look, size, choice, load: chosen.drawn },
+      colours.now,
+    );
     if (data.count > 1 && chosen.course) {
       panel = drawCurve(by("curve"), data, chosen.course, frame, colours.now);
       tellCurve(chosen.course, frame);
@@ -112,7 +111,7 @@ function begin() {
   by("caption").textContent = data.count > 1 ? "Numbers of this frame" : "Numbers of this instant";
   listenToView(view, player, changed);
   listenToTime(data, player);
-  listenToDrawn(chosen, changed);
+  listenToDrawn(chosen, player, changed);
   listenToSections(chosen, changed);
   listenToCurve(chosen, player, changed, () => panel);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => {

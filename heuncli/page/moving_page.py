@@ -9,15 +9,15 @@ import numpy as np
 
 from heuncli.foreign_text import shown
 from heuncli.page.cuts import sections_of
-from heuncli.page.frames import MOST, PageFrames, frames_of
+from heuncli.page.frames import MOST, PageFrames, frames_of, results_at
 from heuncli.page.geometry import scene_of
 from heuncli.page.inlined import whole_page
-from heuncli.page.number_rows import blocks_of, blow_of
+from heuncli.page.number_rows import blocks_of, blow_tables
 from heuncli.page.packing import packed
 from heuncli.records import replace
-from heuncli.report.digits import certainty
+from heuncli.report.digits import Certainty, certainty
 from heuncli.report.heading import heading
-from heuncli.report.labels import labels_of
+from heuncli.report.labels import Labels, labels_of
 from heuncli.report.table_plans import SECTIONS
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Results
@@ -26,6 +26,8 @@ from heuncli.scenery.poses import poses_in
 from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
+MOST_BLOWS = 12  # whose numbers are listed
+TELLING = ("unseen", "stiff", "rest", "split", "status", "warning")  # lines of a heading that are told at once
 
 
 def moving_page(study: Study, units: Units, most: int = MOST) -> str:
@@ -37,13 +39,13 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     """All that a page knows: plain data, arrays packed."""
     frames = frames_of(study, most)
     own, spec = study.results, study.spec
-    results = own if np.array_equal(frames.times, own.time) else study.resample(frames.times)
+    results = results_at(study, frames.times)
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
     horizon = own.accuracy.get("horizon")
     return {
         "title": shown(own.title),
-        "about": [[label, shown(text)] for label, text in heading(own)[1:]],
+        "about": [[label, shown(text)] for label, text in (*heading(own)[1:], ("spec", _digest(own))) if text],
         "version": own.version,
         "file": shown(str(own.spec.get("path", ""))),
         "told": [*frames.told, *_told(own, horizon)],
@@ -54,19 +56,43 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
         "length": list(units.of("m")),
         "scene": scene_of(machine_of(spec), spec, results, poses_in(results)),
         "blocks": blocks_of(results, labels, certain),
-        "blows": [block for k, blow in enumerate(own.impulses[:1]) for block in blow_of(k, blow, own, labels, certain)],
+        "blows": list(_blows(own, frames, labels, certain)),
         "sections": sections_of(spec, results, labels, certain),
         "cutting": SECTIONS.heading(results, labels),
         "foundation": _about(results),
     }
 
 
+def _digest(results: Results) -> str:
+    """The spec that was solved, by its digest."""
+    digest = results.spec.get("sha256")
+    return f"{results.spec.get('path', '')}, sha256 {digest}" if digest else ""
+
+
 def _told(results: Results, horizon: float | None) -> Iterator[str]:
     """What is to be known before the numbers are read."""
+    yield from (shown(f"{label}: {text}") for label, text in heading(results) if label in TELLING)
     if horizon is not None:
         yield f"The motion is known up to t = {horizon:.6g} s: nothing beyond is claimed, and nothing of it is here."
+    if len(results.impulses) > MOST_BLOWS:
+        yield f"There are {len(results.impulses)} blows; the numbers of the first {MOST_BLOWS} are listed."
     if any(joint.get("open") for joint in results.joints.values()):
         yield "Open: redundant supports leave some numbers open; they are told as such, and have no arrow."
+
+
+def _blows(results: Results, frames: PageFrames, labels: Labels, certain: Certainty) -> Iterator[dict[str, Any]]:
+    """The blows within the frames, each with the frame just after it and its tables."""
+    for number, blow in enumerate(results.impulses[:MOST_BLOWS]):
+        at = float(blow["time"])
+        if frames.times[0] <= at <= frames.times[-1]:
+            words = f"{', '.join(blow['names']) or 'blow'}, {at:.6g} s"
+            tables = blow_tables(number, blow, results, labels, certain)
+            yield {"number": number, "frame": _frame(frames, at), "words": shown(words), "blocks": tables}
+
+
+def _frame(frames: PageFrames, at: float) -> int:
+    """The frame that is at an instant, or next after it."""
+    return min(int(np.searchsorted(frames.times, at)), len(frames.times) - 1)
 
 
 def _about(results: Results) -> list[float] | None:
@@ -76,7 +102,7 @@ def _about(results: Results) -> list[float] | None:
 
 
 def _marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
-    """Blows and events within the frames: what and when, and the frame that is at that instant or next after it."""
+    """Blows and events within the frames: what, when, at which frame."""
     found = [(float(blow["time"]), ", ".join(blow["names"]) or "blow") for blow in results.impulses]
     for name, event in results.events.items():
         words = event.get("to", ())
@@ -85,5 +111,4 @@ def _marks(results: Results, frames: PageFrames) -> Iterator[dict[str, Any]]:
     first, last = float(frames.times[0]), float(frames.times[-1])
     for at, words in sorted(found)[:MOST_MARKS]:
         if first <= at <= last:
-            frame = min(int(np.searchsorted(frames.times, at)), len(frames.times) - 1)
-            yield {"frame": frame, "time": at, "words": shown(str(words))}
+            yield {"frame": _frame(frames, at), "time": at, "words": shown(str(words))}

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from heuncli.page.packing import packed
-from heuncli.report.digits import Certainty, Style
+from heuncli.report.certain_sums import sums_table
+from heuncli.report.digits import OPEN, Certainty, Style
 from heuncli.report.labels import Labels
 from heuncli.report.series import Series, in_units, walk, walk_impulse
 from heuncli.report.table_blocks import FAMILIES, POSITIONS, NumberRow, family_styles, rows_of
@@ -20,6 +21,7 @@ from heuncli.report.table_plans import AXIS, IMPULSES, PLANS, TablePlan
 from heuncli.results import Array, Block, Results
 from heuncli.results_schema import RESULTANTS, STRESSES
 
+ZEROS = "0 throughout: "
 LEFT_OUT = frozenset({"bodies", "points", "sections"})  # sections have rows of their own
 
 
@@ -27,11 +29,14 @@ def blocks_of(results: Results, labels: Labels, certain: Certainty) -> list[dict
     """The tables of what runs over the instants, each with its heading, which tells signs and axes."""
     series = [item for item in walk(results, labels) if not item.cause]
     plans = [plan for plan in PLANS if plan.kind not in LEFT_OUT and (plan.only is None or plan is AXIS)]
-    found = (_block(plan, series, plan.heading(results, labels), labels, certain) for plan in plans)
-    return [block for block in found if block["groups"]]
+    found = [_block(plan, series, plan.heading(results, labels), labels, certain) for plan in plans]
+    sums = sums_table(results, certain, unit=labels.units.of("N"))
+    if sums is not None:
+        found.append({"heading": sums.heading, "groups": [], "told": list(sums.notes), "missing": OPEN})
+    return [block for block in found if block["groups"] or block["told"]]
 
 
-def blow_of(number: int, blow: Block, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
+def blow_tables(number: int, blow: Block, results: Results, labels: Labels, certain: Certainty) -> list[dict[str, Any]]:
     """The tables of one blow: numbers that hold at its instant alone."""
     series = [item for item in walk_impulse(blow, labels) if not item.cause]
     begin = f"AT {float(blow['time']):.6g} s, {', '.join(blow['names']) or 'blow'}: "
@@ -60,21 +65,22 @@ def _block(
     for item in series:
         if item.kind == plan.kind and item.quantity in plan.quantities and _of_plan(plan, item.name):
             named.setdefault(item.name, []).append(item)
-    told_of = ""
+    told: list[str] = []
     if plan.of_foundation and len(named) == 2 and (only := [name for name in named if name.startswith("supports.")]):
         named = {"": named[""]}
-        told_of = f"all of it goes through {only[0].removeprefix('supports.')}, the only support"
+        told = [f"all of it goes through {only[0].removeprefix('supports.')}, the only support"]
     groups, zero = [], []
     for name, own in named.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)
         order = sorted(own, key=lambda item: plan.quantities.index(item.quantity))
         rows = list(rows_in(order, labels, certain))
-        shown = [row for row, seen in rows if seen]
-        zero += [f"{label} {row['label']}".strip() for row, seen in rows if not seen]
+        shown = [row for row, seen in rows if seen or plan is AXIS]
+        zero += [f"{label} {row['label']}".strip() for row, seen in rows if not seen and plan is not AXIS]
         if shown:
             spoken = "" if plan.only else label or ("total" if plan.of_foundation else "")
             groups.append({"name": spoken, "note": plan.note(label, labels), "rows": shown})
-    return {"heading": heading, "groups": groups, "zero": zero, "told": told_of, "missing": plan.missing[0]}
+    told += [f"{ZEROS}{', '.join(zero)}"] if zero else []
+    return {"heading": heading, "groups": groups, "told": told, "missing": plan.missing[0]}
 
 
 def _of_plan(plan: TablePlan, name: str) -> bool:
@@ -90,7 +96,7 @@ def rows_in(series: Sequence[Series], labels: Labels, certain: Certainty) -> Ite
     flat = [row for rows in shown for row in rows]
     styles = iter(family_styles(flat, np.zeros((0, len(flat))), certain))
     for item, rows in zip(series, shown, strict=True):
-        how = [next(styles) for _ in rows][0]
+        how, *_ = [next(styles) for _ in rows]
         yield _row(item, labels, how), any(not is_zero(row, how) for row in rows)
 
 
@@ -100,12 +106,12 @@ def _row(item: Series, labels: Labels, how: Style) -> dict[str, Any]:
     label = item.quantity.replace("_", " ")
     sized = len(parts) > 1 and item.quantity not in POSITIONS
     return {
-        "path": item.path, "label": label, "unit": unit, "size": size, "style": told(how), "parts": parts,
+        "path": item.path, "label": label, "unit": unit, "size": size, "style": style_told(how), "parts": parts,
         "sized": sized,
     }  # fmt: skip
 
 
-def told(how: Style) -> list[Any]:
+def style_told(how: Style) -> list[Any]:
     """A style as a page reads it: decimals, whether with an exponent, what is 0, whether any digit is known."""
     return [how.decimals, how.exponent, how.rounding, how.known]
 
@@ -135,7 +141,7 @@ def loads_of(name: str, section: Mapping[str, Any], labels: Labels, certain: Cer
         unit, size = _kind(row.label, labels)
         found.append({
             "path": f"sections.{name}.{below}{row.label}", "label": row.label.replace("_", " "), "unit": unit,
-            "size": size, "style": told(how), "values": packed(row.values),
+            "size": size, "style": style_told(how), "values": packed(row.values),
         })  # fmt: skip
     return found
 

@@ -1,49 +1,109 @@
-/** @file What is nearer hides what is farther: faces and lines gathered, sorted by how near they are, painted in turn. */
+/** @file What is nearer hides what is farther: faces, balls and lines, gathered, then painted, the farthest first. */
 
-/** @typedef {{near: number, points: number[], fill: string|null, line: string|null, width: number}} Item */
+const WIDER = 0.35; // pixels: how far beyond its corners a face is painted, so that no seam shows beside it
 
-/** A painter; points are flat: right, down, right, down, ... [pixels]; near [m]. */
+/**
+ * @typedef {object} Item
+ * @property {number} near how near to the viewer [m]
+ * @property {(pen: CanvasRenderingContext2D, opaque: number) => void} paint what paints it
+ */
+
+/** Go round a polygon: right, down, right, down, ... [pixels]. */
+function round(pen, points) {
+  pen.beginPath();
+  pen.moveTo(points[0], points[1]);
+  for (let k = 2; k < points.length; k += 2) pen.lineTo(points[k], points[k + 1]);
+}
+
+/** Move the corners of a polygon out from its middle. */
+function widen(points, x, y) {
+  for (let k = 0; k < points.length; k += 2) {
+    const [dx, dy] = [points[k] - x, points[k + 1] - y];
+    const size = Math.sqrt(dx * dx + dy * dy) || 1;
+    points[k] += (WIDER * dx) / size;
+    points[k + 1] += (WIDER * dy) / size;
+  }
+}
+
+/** Fill what was gone round, as opaque as bodies are. */
+function filled(pen, fill, opaque) {
+  if (opaque === 0) return;
+  pen.fillStyle = fill;
+  pen.globalAlpha = opaque;
+  pen.fill();
+  pen.globalAlpha = 1;
+}
+
+/** A painter. */
 export class Painter {
   /** @param {CanvasRenderingContext2D} pen */
   constructor(pen) {
     this.pen = pen;
     /** @type {Item[]} */
     this.items = [];
-    this.opaque = 1;
   }
 
-  /** A face; the line in its colour closes the seams between neighbours. */
-  face(near, points, fill) {
-    this.items.push({ near, points, fill, line: fill, width: 0.7 });
+  /**
+   * A face with some of its sides drawn.
+   * @param {number} near @param {number[]} points @param {number[]} middle @param {string} fill
+   * @param {number[]} sides pieces of line: from right, down, to right, down, ... @param {string} line
+   */
+  face(near, points, [x, y], fill, sides, line) {
+    widen(points, x, y);
+    this.items.push({
+      near,
+      paint: (pen, opaque) => {
+        round(pen, points);
+        filled(pen, fill, opaque);
+        if (!sides.length) return;
+        pen.beginPath();
+        for (let k = 0; k < sides.length; k += 4) {
+          pen.moveTo(sides[k], sides[k + 1]);
+          pen.lineTo(sides[k + 2], sides[k + 3]);
+        }
+        pen.strokeStyle = line;
+        pen.lineWidth = 1;
+        pen.stroke();
+      },
+    });
+  }
+
+  /** A ball, lit from above left. @param {string[]} shades from dark to bright */
+  ball(near, x, y, radius, shades, line) {
+    this.items.push({
+      near,
+      paint: (pen, opaque) => {
+        pen.beginPath();
+        pen.arc(x, y, radius, 0, 2 * Math.PI);
+        const light = pen.createRadialGradient(x - 0.37 * radius, y - 0.5 * radius, 0, x, y, 1.15 * radius);
+        shades.forEach((shade, k) => light.addColorStop(1 - k / (shades.length - 1), shade));
+        filled(pen, light, opaque);
+        pen.strokeStyle = line;
+        pen.lineWidth = 1;
+        pen.stroke();
+      },
+    });
   }
 
   /** A line. */
   line(near, points, line, width) {
-    this.items.push({ near, points, fill: null, line, width });
+    this.items.push({
+      near,
+      paint: (pen) => {
+        round(pen, points);
+        pen.strokeStyle = line;
+        pen.lineWidth = width;
+        pen.stroke();
+      },
+    });
   }
 
-  /** Paint all that was gathered, the farthest first. */
-  paint() {
-    const { pen, items, opaque } = this;
-    items.sort((a, b) => a.near - b.near);
-    pen.lineJoin = "round";
-    pen.lineCap = "round";
-    for (const { points, fill, line, width } of items) {
-      pen.beginPath();
-      pen.moveTo(points[0], points[1]);
-      for (let k = 2; k < points.length; k += 2) pen.lineTo(points[k], points[k + 1]);
-      if (fill) {
-        pen.closePath();
-        pen.fillStyle = fill;
-        pen.globalAlpha = opaque;
-        pen.fill();
-        pen.globalAlpha = 1;
-        if (opaque < 1) continue;
-      }
-      pen.strokeStyle = line;
-      pen.lineWidth = width;
-      pen.stroke();
-    }
+  /** Paint all that was gathered, the farthest first. @param {number} opaque how opaque bodies are, 0 to 1 */
+  paint(opaque) {
+    this.items.sort((a, b) => a.near - b.near);
+    this.pen.lineJoin = "round";
+    this.pen.lineCap = "round";
+    for (const item of this.items) item.paint(this.pen, opaque);
     this.items = [];
   }
 }

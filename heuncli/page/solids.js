@@ -1,10 +1,12 @@
 /** @file Bodies: faces of their shapes with light from above left, their edges; bars where a body has no shapes. */
 
 import { SHADES, tints } from "./colours.js";
+import { stands } from "./poses.js";
+import { armsOf, sidesOf } from "./surfaces.js";
 
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
-const BEFORE = 0.004; // of the scene: how much nearer an edge is taken than its face
+const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
 /**
  * Corners on the screen: right, down [pixels], near [m], one after the other.
@@ -14,13 +16,13 @@ const BEFORE = 0.004; // of the scene: how much nearer an edge is taken than its
 function seen(corners, pose, view) {
   const { place, R } = pose;
   const at = view.project(place);
-  const columns = [0, 1, 2].map((k) => view.direct([R[k], R[3 + k], R[6 + k]]));
+  const [a, b, c] = [0, 1, 2].map((k) => view.direct([R[k], R[3 + k], R[6 + k]]));
   const found = new Float64Array(corners.length);
   for (let i = 0; i < corners.length; i += 3) {
-    for (let k = 0; k < 3; k += 1) {
-      found[i + k] =
-        at[k] + columns[0][k] * corners[i] + columns[1][k] * corners[i + 1] + columns[2][k] * corners[i + 2];
-    }
+    const [x, y, z] = [corners[i], corners[i + 1], corners[i + 2]];
+    found[i] = at[0] + a[0] * x + b[0] * y + c[0] * z;
+    found[i + 1] = at[1] + a[1] * x + b[1] * y + c[1] * z;
+    found[i + 2] = at[2] + a[2] * x + b[2] * y + c[2] * z;
   }
   return found;
 }
@@ -36,57 +38,77 @@ function brightness(c, face, scale) {
   return Math.max(0, (n[0] * LIGHT[0] + n[1] * LIGHT[1] + n[2] * LIGHT[2]) / size);
 }
 
-/** The faces of a surface that look at the viewer. */
-function paintFaces(painter, surface, pose, view, shades) {
+/** Twice the area of a face on the screen: negative where it looks at the viewer, for down is positive there. */
+function areaOf(c, face) {
+  let area = 0;
+  for (let k = 0; k < face.length; k += 1) {
+    const i = 3 * face[k];
+    const j = 3 * face[(k + 1) % face.length];
+    area += c[i] * c[j + 1] - c[j] * c[i + 1];
+  }
+  return area;
+}
+
+/** The faces of a surface that look at the viewer, with the edges between them and at the outline. */
+function paintFaces(painter, surface, pose, view, { shades, edge }) {
+  const { faces } = surface;
+  const sides = sidesOf(surface);
   const c = seen(surface.corners, pose, view);
-  const { scale } = view;
-  for (const face of surface.faces) {
+  const looks = faces.map((face) => areaOf(c, face) < 0);
+  faces.forEach((face, f) => {
+    if (!looks[f]) return;
     const points = new Array(2 * face.length);
-    let area = 0;
-    let near = 0;
+    const middle = [0, 0, 0];
     for (let k = 0; k < face.length; k += 1) {
       const i = 3 * face[k];
-      const j = 3 * face[(k + 1) % face.length];
-      area += c[i] * c[j + 1] - c[j] * c[i + 1];
-      near += c[i + 2];
       points[2 * k] = c[i];
       points[2 * k + 1] = c[i + 1];
+      for (let a = 0; a < 3; a += 1) middle[a] += c[i + a] / face.length;
     }
-    if (area >= 0) continue; // down is positive on a screen: what looks at the viewer goes round the other way
-    const bright = Math.round(brightness(c, face, scale) * (SHADES - 1));
-    painter.face(near / face.length, points, shades[bright]);
-  }
+    const drawn = [];
+    for (const { i, j, beyond, edge: sharp } of sides[f]) {
+      if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
+    }
+    const bright = Math.round(brightness(c, face, view.scale) * (SHADES - 1));
+    painter.face(middle[2], points, middle, shades[bright], drawn, edge);
+  });
 }
 
 /** A polyline of a body, a piece at a time, so that each is hidden by itself. */
-function paintPieces(painter, line, pose, view, paint) {
+function paintPieces(line, pose, view, paint) {
   const c = seen(line, pose, view);
   for (let i = 0; i + 5 < c.length; i += 3) {
     paint((c[i + 2] + c[i + 5]) / 2, [c[i], c[i + 1], c[i + 3], c[i + 4]]);
   }
 }
 
-/** All bodies, given to the painter. @param {number} look how opaque faces are, 0 to 1 */
-export function paintBodies(painter, scene, poses, view, colours, look) {
-  painter.opaque = look;
-  const before = BEFORE * view.radius;
+/** A body without shapes: bars through its points; one of a single point is a dot. */
+function paintBars(painter, line, pose, view, { edge, bar }) {
+  paintPieces(line, pose, view, (near, points) => {
+    painter.line(near, points, edge, BAR + 2);
+    painter.line(near + BEFORE * view.radius, points, bar, BAR);
+  });
+  if (line.length === 3) {
+    const [x, y, near] = seen(line, pose, view);
+    painter.line(near, [x, y, x, y], edge, 2 * BAR);
+  }
+}
+
+/** All bodies, given to the painter. */
+export function paintBodies(painter, scene, poses, view, colours) {
   scene.bodies.forEach((body, k) => {
-    const { shades, edge, bar } = tints(k, colours.dark);
+    const own = tints(k, colours.dark);
     for (const surface of body.surfaces) {
-      if (look > 0) paintFaces(painter, surface, poses[k], view, shades);
-      for (const line of surface.edges) {
-        paintPieces(painter, line, poses[k], view, (near, points) => painter.line(near + before, points, edge, 0.9));
+      if (surface.ball) {
+        const [x, y, near] = view.project(stands(poses, k, surface.ball.center));
+        painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
+      } else {
+        paintFaces(painter, surface, poses[k], view, own);
       }
     }
-    for (const line of body.lines) {
-      paintPieces(painter, line, poses[k], view, (near, points) => {
-        painter.line(near, points, edge, BAR + 2);
-        painter.line(near + before, points, bar, BAR);
-      });
-      if (line.length === 3) {
-        const [x, y, near] = view.project(poses[k].place);
-        painter.line(near, [x, y, x, y], edge, 2 * BAR);
-      }
+    for (const line of armsOf(scene, k)) {
+      paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, 2));
     }
+    for (const line of body.lines) paintBars(painter, line, poses[k], view, own);
   });
 }

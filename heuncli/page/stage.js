@@ -12,7 +12,7 @@ import { drawArrows, drawScale } from "./wrenches.js";
 /** Where a body's name stands: the middle of what is drawn of it, body axes [m]. */
 function middleOf(body) {
   if (body.middle) return body.middle;
-  const clouds = [...body.surfaces.map((surface) => surface.corners), ...body.lines];
+  const clouds = [...body.surfaces.map((surface) => surface.ball?.center ?? surface.corners), ...body.lines];
   const sum = [0, 0, 0];
   let count = 0;
   for (const cloud of clouds) {
@@ -42,17 +42,19 @@ function drawNames(pen, scene, poses, view, colours, told) {
  */
 export function drawMachine(canvas, data, view, shown, colours) {
   const { pen, width, height } = cleared(canvas);
-  Object.assign(view, { width, height });
+  view.fill(width, height);
   const { scene } = data;
   const poses = posesAt(scene, shown.frame, shown.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);
   const painter = new Painter(pen);
-  paintBodies(painter, scene, poses, view, colours, shown.look);
-  painter.paint();
+  paintBodies(painter, scene, poses, view, colours);
+  painter.paint(shown.look);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
   for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours);
-  if (shown.load) drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
-  if (shown.names) drawNames(pen, scene, poses, view, colours, shown.values && shown.choice?.key.startsWith("joints.force"));
+  if (shown.load)
+    drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
+  if (shown.names)
+    drawNames(pen, scene, poses, view, colours, shown.values && shown.choice?.key.startsWith("joints.force"));
   let line = 0;
   if (shown.choice) {
     drawArrows(pen, view, poses, shown.choice, shown.frame, colours, shown.size, shown.values);

@@ -38,6 +38,16 @@ export function ring(pen, x, y, radius, fill, line, width = 1.6) {
   pen.stroke();
 }
 
+const SPARE = 4; // pixels: words keep so far from the rim of their canvas
+
+/** Where words begin, so that all of them are on the canvas. */
+function inside(pen, text, x, align) {
+  const share = { left: 0, center: 0.5, right: 1 }[align];
+  const { width } = pen.measureText(text);
+  const left = Math.min(x - share * width, pen.canvas.clientWidth - SPARE - width);
+  return Math.max(SPARE, left) + share * width;
+}
+
 /** Words with a rim of the ground's colour, so that they can be read on anything. */
 export function words(pen, text, x, y, colour, paper, align = "left") {
   pen.font = FONT;
@@ -46,9 +56,10 @@ export function words(pen, text, x, y, colour, paper, align = "left") {
   pen.lineJoin = "round";
   pen.lineWidth = 3.5;
   pen.strokeStyle = paper;
-  pen.strokeText(text, x, y);
+  const at = inside(pen, text, x, align);
+  pen.strokeText(text, at, y);
   pen.fillStyle = colour;
-  pen.fillText(text, x, y);
+  pen.fillText(text, at, y);
 }
 
 /**
@@ -71,7 +82,17 @@ export function arrow(pen, from, to, toward, colour, paper, heads = 1, dash = []
     const [x, y] = [to[0] - 0.75 * k * head * ux, to[1] - 0.75 * k * head * uy];
     const [bx, by] = [x - head * ux, y - head * uy];
     const w = 0.42 * head;
-    shape(pen, [[x, y], [bx - w * uy, by + w * ux], [bx + w * uy, by - w * ux]], colour, paper, 0.8);
+    shape(
+      pen,
+      [
+        [x, y],
+        [bx - w * uy, by + w * ux],
+        [bx + w * uy, by - w * ux],
+      ],
+      colour,
+      paper,
+      0.8,
+    );
   }
 }
 
@@ -81,7 +102,23 @@ function endOn(pen, [x, y], toward, colour, paper) {
   if (toward > 0) {
     ring(pen, x, y, 2.2, colour, colour, 1);
   } else {
-    polyline(pen, [[x - 4.5, y - 4.5], [x + 4.5, y + 4.5]], colour, 2);
-    polyline(pen, [[x - 4.5, y + 4.5], [x + 4.5, y - 4.5]], colour, 2);
+    polyline(
+      pen,
+      [
+        [x - 4.5, y - 4.5],
+        [x + 4.5, y + 4.5],
+      ],
+      colour,
+      2,
+    );
+    polyline(
+      pen,
+      [
+        [x - 4.5, y + 4.5],
+        [x + 4.5, y - 4.5],
+      ],
+      colour,
+      2,
+    );
   }
 }

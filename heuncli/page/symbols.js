@@ -2,16 +2,14 @@
 
 import { points, stands } from "./poses.js";
 import { arrow, polyline, ring, shape, words } from "./strokes.js";
-import { lengthOf, unit } from "./vectors.js";
+import { cross, lengthOf, unit } from "./vectors.js";
 
 const R = 5.5; // pixels: radius of a joint
 const STAND = 15; // pixels: from a joint to the ground that holds it
 const HALF = 12; // pixels: half of the line of ground under a joint
 const GUIDE = 0.11; // of the scene: half of a guide's rails
 const COILS = 7;
-
-/** The kinds of joints that hold a point, and what their symbol has beside its ring. */
-const AT_POINT = { ball: "ball", pin: "pin", universal: "cross", weld: "weld" };
+const CORNER = 30; // pixels: length of the axes of the world
 
 /** A direction on the screen of unit length; one that looks at the viewer has none. */
 function onScreen(view, v) {
@@ -20,105 +18,121 @@ function onScreen(view, v) {
   return size > 0.15 * view.scale ? [x / size, y / size] : null;
 }
 
-/** Ground: a line with strokes beyond it; u along it, n away from what stands on it. */
-function hatched(pen, [x, y], u, n, half, colours) {
-  polyline(pen, [[x - half * u[0], y - half * u[1]], [x + half * u[0], y + half * u[1]]], colours.ink, 1.6);
-  for (let t = -half + 3; t <= half; t += 5) {
-    const [bx, by] = [x + t * u[0], y + t * u[1]];
-    polyline(pen, [[bx, by], [bx + 5 * (n[0] - 0.7 * u[0]), by + 5 * (n[1] - 0.7 * u[1])]], colours.ink, 1);
-  }
+/** Places about one on the screen: so many pixels along a direction, and so many to its right as one looks along it. */
+function placer([x, y], [ux, uy]) {
+  return (along, aside = 0) => [x + along * ux - aside * uy, y + along * uy + aside * ux];
 }
 
-/** A joint that holds a point: with legs where it stands on the ground. */
-function atPoint(pen, view, joint, at, axis, grounded, colours) {
-  const [x, y] = at;
-  if (grounded) {
-    const n = onScreen(view, view.up.map((c) => -c)) || [0, 1];
-    const u = [-n[1], n[0]];
-    const foot = [x + STAND * n[0], y + STAND * n[1]];
-    const legs = [-8, 8].map((t) => [foot[0] + t * u[0], foot[1] + t * u[1]]);
-    shape(pen, [at, ...legs], colours.paper, colours.ink, 1.4);
-    hatched(pen, foot, u, n, HALF, colours);
-  }
-  const along = joint.kind === "pin" && onScreen(view, axis);
-  if (along) {
-    const reach = 11;
-    polyline(pen, [[x - reach * along[0], y - reach * along[1]], [x + reach * along[0], y + reach * along[1]]], colours.ink, 2);
-  }
-  if (AT_POINT[joint.kind] === "weld") {
-    shape(pen, [[x - 5, y - 5], [x + 5, y - 5], [x + 5, y + 5], [x - 5, y + 5]], colours.ink, colours.paper, 1);
-    return;
-  }
-  ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
-  if (joint.kind === "ball") ring(pen, x, y, R - 2.8, colours.ink, colours.ink, 1);
-  if (joint.kind === "pin") ring(pen, x, y, 1.2, colours.ink, colours.ink, 1);
-  if (joint.kind === "universal") {
-    polyline(pen, [[x - R, y], [x + R, y]], colours.ink, 1.5);
-    polyline(pen, [[x, y - R], [x, y + R]], colours.ink, 1.5);
-  }
+/** Ground: a line through a place with strokes beyond it; n: away from what stands on it. */
+function hatched(pen, at, n, half, colours) {
+  const place = placer(at, n);
+  polyline(pen, [place(0, -half), place(0, half)], colours.ink, 1.6);
+  for (let t = -half + 3; t <= half; t += 5) polyline(pen, [place(0, t), place(5, t - 3.5)], colours.ink, 1);
 }
 
-/** Two rails along a direction at both sides of a place, hatched where they are the ground. */
-function rails(pen, view, at, axis, grounded, colours, sides) {
-  const u = onScreen(view, axis);
+/** Legs from a joint to the ground that holds it. */
+function standing(pen, view, at, colours) {
+  const down = view.up.map((component) => -component);
+  const n = onScreen(view, down) ?? [0, 1];
+  const place = placer(at, n);
+  shape(pen, [at, place(STAND, -8), place(STAND, 8)], colours.paper, colours.ink, 1.4);
+  hatched(pen, place(STAND), n, HALF, colours);
+}
+
+/** What a joint that holds a point is drawn as, by its kind, at a place; along: its axis on the screen, if seen. */
+const AT_POINT = {
+  ball: (pen, [x, y], along, colours) => {
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    ring(pen, x, y, R - 2.8, colours.ink, colours.ink, 1);
+  },
+  pin: (pen, [x, y], along, colours) => {
+    const place = along && placer([x, y], along);
+    if (place) polyline(pen, [place(-2 * R), place(2 * R)], colours.ink, 2);
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    ring(pen, x, y, 1.2, colours.ink, colours.ink, 1);
+  },
+  universal: (pen, [x, y], along, colours) => {
+    const place = placer([x, y], along ?? [1, 0]);
+    ring(pen, x, y, R, colours.paper, colours.ink, 1.8);
+    polyline(pen, [place(-R), place(R)], colours.ink, 1.5);
+    polyline(pen, [place(0, -R), place(0, R)], colours.ink, 1.5);
+  },
+  weld: (pen, at, along, colours) => {
+    const place = placer(at, [1, 0]);
+    shape(pen, [place(-5, -5), place(5, -5), place(5, 5), place(-5, 5)], colours.ink, colours.paper, 1);
+  },
+};
+
+/** Rails along a world direction beside a place, the first of them hatched where it is the ground. */
+function rails(pen, view, at, along, grounded, colours, sides) {
+  const u = onScreen(view, along);
   if (!u) return;
-  const n = [-u[1], u[0]];
-  const flipped = n[1] < 0 ? [-n[0], -n[1]] : n;
-  const half = Math.max(16, Math.min(60, GUIDE * view.radius * Math.hypot(...view.direct(unit(axis)).slice(0, 2))));
-  for (const side of sides) {
-    const foot = [at[0] + side * flipped[0], at[1] + side * flipped[1]];
-    const ends = [-half, half].map((t) => [foot[0] + t * u[0], foot[1] + t * u[1]]);
-    polyline(pen, ends, colours.ink, 1.5);
-    if (grounded && side === sides[0]) hatched(pen, foot, u, flipped, half, colours);
-  }
+  const n = u[0] >= 0 ? u : [-u[0], -u[1]]; // so that the ground is below
+  const place = placer(at, n);
+  const half = Math.max(16, Math.min(60, GUIDE * view.radius * view.scale));
+  sides.forEach((side, k) => {
+    polyline(pen, [place(-half, side), place(half, side)], colours.ink, 1.5);
+    if (grounded && k === 0) hatched(pen, place(0, side), [-n[1], n[0]], half, colours);
+  });
 }
 
-/** What slides: a block between rails, on a line that is dashed from where it is counted. */
-function sliding(pen, view, joint, from, at, axis, grounded, colours) {
-  const u = onScreen(view, axis) || [1, 0];
-  const n = [-u[1], u[0]];
-  polyline(pen, [from.slice(0, 2), at.slice(0, 2)], colours.faint, 1, [5, 4]);
-  if (joint.kind === "line" || joint.kind === "plane") {
-    const across = joint.kind === "plane" ? [n[0], n[1]] : u;
-    const along = joint.kind === "plane" ? planeLine(view, axis) : axis;
-    if (along) rails(pen, view, at, along, grounded, colours, joint.kind === "plane" ? [R + 2] : [R + 2, -R - 2]);
-    ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8);
-    polyline(pen, [[at[0] - 2 * across[0], at[1] - 2 * across[1]], [at[0] + 2 * across[0], at[1] + 2 * across[1]]], colours.ink, 1.5);
-    return;
-  }
+/** A block between rails. */
+function block(pen, view, at, axis, grounded, colours) {
+  const place = placer(at, onScreen(view, axis) ?? [1, 0]);
   rails(pen, view, at, axis, grounded, colours, [9, -9]);
-  const corner = (a, b) => [at[0] + a * u[0] + b * n[0], at[1] + a * u[1] + b * n[1]];
-  shape(pen, [corner(-10, -6), corner(10, -6), corner(10, 6), corner(-10, 6)], colours.paper, colours.ink, 1.8);
-  if (joint.kind === "cylinder") ring(pen, at[0], at[1], 3, colours.paper, colours.ink, 1.4);
+  shape(pen, [place(-10, -6), place(10, -6), place(10, 6), place(-10, 6)], colours.paper, colours.ink, 1.8);
 }
 
-/** A direction in a plane that lies across the screen, by its normal. */
-function planeLine(view, normal) {
-  const v = [0, 1, 2].map((i) => normal[(i + 1) % 3] * view.toward[(i + 2) % 3] - normal[(i + 2) % 3] * view.toward[(i + 1) % 3]);
-  return lengthOf(v) > 0.1 ? v : null;
+/** A roller on rails. */
+function roller(pen, view, at, along, grounded, colours, sides) {
+  if (lengthOf(along) > 0.1) rails(pen, view, at, along, grounded, colours, sides);
+  ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8);
+  ring(pen, at[0], at[1], 1.2, colours.ink, colours.ink, 1);
+}
+
+/** What a joint that leaves a point free to slide is drawn as, by its kind. */
+const SLIDING = {
+  slide: block,
+  cylinder: (pen, view, at, axis, grounded, colours) => {
+    block(pen, view, at, axis, grounded, colours);
+    ring(pen, at[0], at[1], 3, colours.paper, colours.ink, 1.4);
+  },
+  line: (pen, view, at, axis, grounded, colours) => {
+    roller(pen, view, at, axis, grounded, colours, [R + 2, -R - 2]);
+  },
+  plane: (pen, view, at, normal, grounded, colours) => {
+    roller(pen, view, at, cross(normal, view.toward), grounded, colours, [R + 2]);
+  },
+};
+
+/** A bar or rope between two points. */
+function drawRod(pen, joint, from, at, colours) {
+  polyline(pen, [from, at], colours.ink, 2, joint.rope ? [8, 3] : []);
+  for (const [[x, y], other, body] of [
+    [from, at, joint.a],
+    [at, from, joint.b],
+  ]) {
+    const size = Math.hypot(x - other[0], y - other[1]) || 1;
+    const away = [(x - other[0]) / size, (y - other[1]) / size];
+    ring(pen, x, y, 3.5, colours.paper, colours.ink);
+    if (body < 0) hatched(pen, placer([x, y], away)(5), away, HALF, colours);
+  }
 }
 
 /** A joint. */
 export function drawJoint(pen, view, poses, joint, colours) {
-  const from = view.project(stands(poses, joint.a, joint.p));
-  const at = view.project(stands(poses, joint.b, joint.q));
+  const from = view.project(stands(poses, joint.a, joint.p)).slice(0, 2);
+  const at = view.project(stands(poses, joint.b, joint.q)).slice(0, 2);
   const axis = points(poses, joint.a, joint.axis);
   const grounded = joint.a < 0 || joint.b < 0;
-  if (joint.kind === "rod") {
-    polyline(pen, [from, at], colours.ink, 2, joint.rope ? [8, 3] : []);
-    ring(pen, from[0], from[1], 3.5, colours.paper, colours.ink);
-    ring(pen, at[0], at[1], 3.5, colours.paper, colours.ink);
-    if (grounded) {
-      const held = joint.a < 0 ? from : at;
-      const other = joint.a < 0 ? at : from;
-      const size = Math.hypot(other[0] - held[0], other[1] - held[1]) || 1;
-      const n = [(held[0] - other[0]) / size, (held[1] - other[1]) / size];
-      hatched(pen, [held[0] + 5 * n[0], held[1] + 5 * n[1]], [-n[1], n[0]], n, HALF, colours);
-    }
-  } else if (joint.kind in AT_POINT) {
-    atPoint(pen, view, joint, at.slice(0, 2), axis, grounded, colours);
+  if (joint.kind in AT_POINT) {
+    if (grounded) standing(pen, view, at, colours);
+    AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);
+  } else if (joint.kind in SLIDING) {
+    polyline(pen, [from, at], colours.faint, 1, [5, 4]);
+    SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
   } else {
-    sliding(pen, view, joint, from, at, axis, grounded, colours);
+    drawRod(pen, joint, from, at, colours);
   }
 }
 
@@ -126,11 +140,9 @@ export function drawJoint(pen, view, poses, joint, colours) {
 export function drawLine(pen, view, poses, line, colours) {
   const a = view.project(stands(poses, line.a, line.p));
   const b = view.project(stands(poses, line.b, line.q));
-  const at = (t, side = 0) => {
-    const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
-    const size = Math.hypot(dx, dy) || 1;
-    return [a[0] + t * dx - (side * dy) / size, a[1] + t * dy + (side * dx) / size];
-  };
+  const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
+  const place = placer(a, [(b[0] - a[0]) / long, (b[1] - a[1]) / long]);
+  const at = (share, aside = 0) => place(share * long, aside);
   if (line.kind === "spring") {
     const turns = [];
     for (let k = 0; k < 2 * COILS; k += 1) turns.push(at(0.15 + (0.7 * (k + 0.5)) / (2 * COILS), k % 2 ? 6 : -6));
@@ -146,15 +158,25 @@ export function drawLine(pen, view, poses, line, colours) {
 /** The axes of the world, and gravity beside them. */
 export function drawCorner(pen, view, gravity, colours) {
   const [x, y] = [44, view.height - 44];
+  const told = (direction) => view.direct(direction).map((component) => (CORNER * component) / view.scale);
   ["x", "y", "z"].forEach((name, k) => {
-    const axis = [0, 1, 2].map((i) => (i === k ? 1 : 0));
-    const [dx, dy] = view.direct(axis).map((c) => (30 * c) / view.scale);
-    polyline(pen, [[x, y], [x + dx, y + dy]], colours.ink, 1.6);
-    const size = Math.hypot(dx, dy) || 1;
-    if (size > 6) words(pen, name, x + dx * (1 + 9 / size), y + dy * (1 + 9 / size), colours.ink, colours.panel, "center");
+    const [dx, dy] = told([0, 1, 2].map((i) => Number(i === k)));
+    polyline(
+      pen,
+      [
+        [x, y],
+        [x + dx, y + dy],
+      ],
+      colours.ink,
+      1.6,
+    );
+    const size = Math.hypot(dx, dy);
+    if (size < 6) return;
+    const [nx, ny] = placer([x, y], [dx / size, dy / size])(size + 9);
+    words(pen, name, nx, ny, colours.ink, colours.panel, "center");
   });
   if (lengthOf(gravity) > 0) {
-    const [dx, dy, near] = view.direct(unit(gravity)).map((c) => (30 * c) / view.scale);
+    const [dx, dy, near] = told(unit(gravity));
     const from = [x + 62, y - 16];
     arrow(pen, from, [from[0] + dx, from[1] + dy], near * view.scale, colours.faint, colours.panel);
     words(pen, "g", from[0] + 10, from[1] + 6, colours.faint, colours.panel);
@@ -163,7 +185,7 @@ export function drawCorner(pen, view, gravity, colours) {
 
 /** A point of the ground. */
 export function drawGroundPoint(pen, view, at, colours) {
-  const [x, y] = view.project(at);
-  polyline(pen, [[x - 4, y], [x + 4, y]], colours.faint, 1.2);
-  polyline(pen, [[x, y - 4], [x, y + 4]], colours.faint, 1.2);
+  const place = placer(view.project(at), [1, 0]);
+  polyline(pen, [place(-4), place(4)], colours.faint, 1.2);
+  polyline(pen, [place(0, -4), place(0, 4)], colours.faint, 1.2);
 }

@@ -54,7 +54,7 @@ export class NumberTable {
     table.append(head);
     data.sections.forEach((section, k) => this.addSection(section, k));
     for (const block of data.blocks) this.addBlock(block);
-    for (const block of data.blows) this.addBlock(block);
+    for (const blow of data.blows) blow.blocks.forEach((block) => this.addBlock(block));
   }
 
   /** A block of rows under its heading, which tells axes and signs. */
@@ -65,9 +65,8 @@ export class NumberTable {
       if (group.name || group.note) headed(body, group.name, "group", group.note);
       for (const row of group.rows) body.append(this.rowOf(row, block.missing));
     }
-    for (const text of [block.told, block.zero.length ? `0 throughout: ${block.zero.join(", ")}` : ""]) {
-      if (!text) continue;
-      const line = made("tr", "", { class: "zero" });
+    for (const text of block.told) {
+      const line = made("tr", "", { class: "told" });
       line.append(made("td", text, { colspan: "6" }));
       body.append(line);
     }
@@ -142,7 +141,8 @@ export class NumberTable {
       if (section.s) {
         const [unit, size] = this.data.length;
         const side = section.side[section.chosen] ? `, ${section.side[section.chosen]} what acts there` : "";
-        section.spoken.textContent = `${section.note}; value: at s = ${short(section.s[section.chosen] * size)} ${unit}${side}`;
+        const place = `s = ${short(section.s[section.chosen] * size)} ${unit}`;
+        section.spoken.textContent = `${section.note}; value: at ${place}${side}`;
       }
     }
     for (const cell of this.cells) cell.show(frame);

@@ -4,6 +4,7 @@ import { cross, dot, unit } from "./vectors.js";
 
 const STEEPEST = Math.PI / 2;
 const NEAREST = 400;
+const ROOM = 0.12; // of the scene: for arrows and loads beside the machine
 const FARTHEST = 0.1;
 
 /** The world axis nearest to a direction. @param {number[]} v @returns {number[]} */
@@ -53,13 +54,21 @@ export class View {
     this.fit();
   }
 
+  /** On a canvas of this size [pixels]: all of the machine is kept on it until somebody zooms or shifts. */
+  fill(width, height) {
+    if (width === this.width && height === this.height) return;
+    Object.assign(this, { width, height });
+    if (this.fitted) this.fit();
+  }
+
   /** All of the machine at all frames within the screen, in the middle. */
   fit() {
+    this.fitted = true;
     this.shift = [0, 0];
     this.zoom = 1;
-    const reach = (v) => [0, 1, 2].reduce((sum, i) => sum + this.half[i] * Math.abs(v[i]), 0) + 0.05 * this.radius;
+    const reach = (v) => [0, 1, 2].reduce((sum, i) => sum + this.half[i] * Math.abs(v[i]), 0) + ROOM * this.radius;
     const [wide, high] = [reach(this.right), reach(this.above)];
-    const room = Math.min((this.width - 60) / (2 * wide), (this.height - 60) / (2 * high));
+    const room = Math.max(1, Math.min((this.width - 50) / (2 * wide), (this.height - 50) / (2 * high)));
     this.zoom = Math.min(NEAREST, Math.max(FARTHEST, room / this.scale));
   }
 
@@ -88,6 +97,7 @@ export class View {
   magnify(factor, x = this.width / 2, y = this.height / 2) {
     const zoom = Math.min(NEAREST, Math.max(FARTHEST, this.zoom * factor));
     const real = zoom / this.zoom;
+    this.fitted = false;
     this.zoom = zoom;
     const [cx, cy] = [x - this.width / 2, y - this.height / 2];
     this.shift = [cx + (this.shift[0] - cx) * real, cy + (this.shift[1] - cy) * real];
@@ -95,6 +105,7 @@ export class View {
 
   /** Shifted on the screen [pixels]. */
   move(x, y) {
+    this.fitted = false;
     this.shift = [this.shift[0] + x, this.shift[1] + y];
   }
 

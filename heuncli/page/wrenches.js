@@ -26,7 +26,7 @@ export function largestOf(row) {
 /**
  * What arrows there are to choose from.
  * @param {object} data
- * @returns {{key: string, label: string, rows: {row: object, at: function(object[], number): number[]|null, name: string}[]}[]}
+ * @returns {{key: string, label: string, rows: object[]}[]} of each row its numbers, where it stands, its name
  */
 export function arrowChoices(data) {
   const { rows, scene } = data;
@@ -46,11 +46,16 @@ export function arrowChoices(data) {
     { key: "joints.moment", label: "moments of all joints", rows: wrench("", "moment") },
     ...single,
     { key: "foundation", label: "foundation: force on the ground", rows: of("foundation.force", "foundation", onAxis) },
-    { key: "blow", label: "blow: impulses of all joints", rows: wrench("impulses.0.", "force") },
+    ...data.blows.map((blow) => ({
+      key: `blow.${blow.number}`,
+      label: `${blow.words}: impulses of all joints`,
+      rows: wrench(`impulses.${blow.number}.`, "force"),
+      frame: blow.frame,
+    })),
   ].filter((choice) => choice.rows.length);
 }
 
-/** Pixels of one SI unit of each kind of vector, by the unit. @param {object} choice @param {object} view @param {number} size */
+/** How long one SI unit of each kind of vector is drawn, by the unit [m]. */
 function scales(choice, view, size) {
   const most = new Map();
   for (const { row } of choice.rows) {
@@ -69,18 +74,33 @@ const turning = (row) => row.path.endsWith("moment");
  * @param {number} size by how much longer than usual they are drawn
  */
 export function drawArrows(pen, view, poses, choice, frame, colours, size, tell) {
+  if (choice.frame !== undefined && choice.frame !== frame) return; // a blow is at its own instant alone
   const metres = scales(choice, view, size);
   for (const { row, at, name } of choice.rows) {
     const vector = vectorAt(row, frame);
     const start = at(poses, frame);
-    if (!start || ![...vector, ...start].every(Number.isFinite)) continue;
+    if (!start?.every(Number.isFinite)) continue;
     const [x, y] = view.project(start);
+    const many = choice.rows.length > MOST_WORDS;
+    if (!vector.every(Number.isFinite)) {
+      if (tell && !many) words(pen, `${name} open`, x + 10, y - 12, colours.faint, colours.panel);
+      continue;
+    }
     const [dx, dy, near] = view.direct(vector.map((c) => c * metres.get(row.unit)));
     const moment = turning(row);
     const colour = moment ? colours.moment : colours.force;
-    arrow(pen, [x, y], [x + dx, y + dy], near * view.scale, colour, colours.panel, moment ? 2 : 1, moment ? [6, 3] : []);
+    arrow(
+      pen,
+      [x, y],
+      [x + dx, y + dy],
+      near * view.scale,
+      colour,
+      colours.panel,
+      moment ? 2 : 1,
+      moment ? [6, 3] : [],
+    );
     const text = written(lengthOf(vector) * row.size, row.style);
-    if (tell && choice.rows.length <= MOST_WORDS && text !== "0") {
+    if (tell && !many && text !== "0") {
       const label = `${choice.rows.length > 1 ? `${name} ` : ""}${text} ${row.unit}`;
       const [align, aside] = dx < 0 ? ["right", -6] : ["left", 6];
       words(pen, label, x + dx + aside, y + dy + (dy > 0 ? 9 : -9), colour, colours.panel, align);
@@ -99,7 +119,15 @@ export function drawScale(pen, view, choice, colours, size) {
     const [x, y] = [view.width - 14, view.height - 16 - 20 * line];
     const colour = turning(row) ? colours.moment : colours.force;
     arrow(pen, [x - amount * pixels, y], [x, y], 0, colour, colours.panel, turning(row) ? 2 : 1);
-    polyline(pen, [[x - amount * pixels, y - 4], [x - amount * pixels, y + 4]], colour, 1.5);
+    polyline(
+      pen,
+      [
+        [x - amount * pixels, y - 4],
+        [x - amount * pixels, y + 4],
+      ],
+      colour,
+      1.5,
+    );
     words(pen, `${short(amount)} ${unit} =`, x - amount * pixels - 8, y, colour, colours.panel, "right");
     line += 1;
   }

@@ -34,6 +34,7 @@ from heuncli.study.search.stretches import at_one_instant, stretch_named
 SECTIONS = frozenset({"sections"})
 ALONG, LEAST = 240, 8  # places along a bar, three pixels apart; and between two corners at least
 SEEN = 0.002  # of the span of a quantity: a third of a pixel, beyond which no higher summit is looked for in time
+SAME = 1e-6  # of the larger of two magnitudes: what is as large as the other in a picture
 UNITS = {"N": "N", "Q1": "N", "Q2": "N", "T": "N·m", "M1": "N·m", "M2": "N·m"}
 OF_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}
 
@@ -72,8 +73,11 @@ class Reach(NamedTuple):
 
     @property
     def line(self) -> AlongBar:
-        """At the instant of the largest magnitude."""
-        return self.at_lowest if _larger(self.lowest, self.highest) is self.lowest else self.at_highest
+        """At the instant of the largest magnitude; of two that are as large, the first."""
+        low, high = abs(self.lowest.value), abs(self.highest.value)
+        if abs(high - low) <= SAME * max(high, low):
+            return min(self.at_lowest, self.at_highest, key=lambda line: line.at)
+        return self.at_lowest if low > high else self.at_highest
 
 
 class Edges(NamedTuple):
@@ -111,7 +115,7 @@ class Edges(NamedTuple):
 
 
 @record
-class Bar:
+class WholeBar:
     """A run of cuts of a solved scene: a bar, of which the loads are told anywhere along it."""
 
     study: Study
@@ -291,8 +295,3 @@ def _extreme(s: Array, heights: Array, side: float, at: float) -> Extreme:
         return Extreme(math.nan, math.nan, at)
     k = int(np.nanargmax(heights))
     return Extreme(side * float(heights[k]), float(s[k]), at)
-
-
-def _larger(*both: Extreme) -> Extreme:
-    """Which of two extremes is the larger; of what is open all over, the first."""
-    return max(both, key=lambda one: -1.0 if math.isnan(one.value) else abs(one.value))

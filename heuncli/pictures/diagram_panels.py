@@ -10,26 +10,27 @@ import numpy as np
 from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Strokes, Trace, Words
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.bars import AlongBar, Bar, Extreme, Reach
+from heuncli.pictures.bars import AlongBar, Extreme, Reach, WholeBar
 from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
 
+HIGH, LOW = 150.0, 56.0  # pixels of a panel, and of one in which all is open
 ORDINATES = 60  # of a hatch along a bar
 FREE = 0.011  # of a bar's length: how far from a sign ordinates are
 LOBE = 0.05  # of a bar's length, and of the largest value: what is less has no sign written in it
 VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
 TICKS = 4  # of an axis that is turned over
-SPARE = 0.16  # of a panel's height, beyond what is drawn: room for the words at extremes
+SPARE = 0.22  # of a panel's height, beyond what is drawn: room for the words at extremes
 UNKNOWN = "not known: the stated error is as large as the numbers"
 
 
-class Drawn(NamedTuple):
+class DrawnBar(NamedTuple):
     """What is drawn of a bar with a pen: its quantities at an instant, or over the run."""
 
     name: str
     pen: int
-    bar: Bar
+    bar: WholeBar
     lines: Mapping[str, AlongBar]
     reaches: Mapping[str, Reach]
 
@@ -62,16 +63,17 @@ class Scales(NamedTuple):
     units: tuple[str, str]
 
 
-def diagram(quantity: str, drawn: Sequence[Drawn], units: Units, label: str, *, over: bool) -> Panel:
+def diagram(quantity: str, drawn: Sequence[DrawnBar], units: Units, label: str, *, over: bool) -> Panel:
     """The panel of a quantity; over: with its axis turned over, so that what is positive points down."""
     length, own = units.of("m"), units.of(drawn[0].bar.unit(quantity))
     to = Scales(length[1], own[1], -1.0 if over else 1.0, (length[0], own[0]))
     y = _scaling(quantity, drawn, to, label)
     items = [item for each in drawn for item in _of_one(each, quantity, to, y, alone=len(drawn) == 1)]
-    return Panel(y, y, tuple(items), 150.0)
+    is_open = all(np.isnan(each.size(quantity)) for each in drawn)
+    return Panel(y, y, tuple(items), LOW if is_open else HIGH)
 
 
-def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> Scaling:
+def _scaling(quantity: str, drawn: Sequence[DrawnBar], to: Scales, label: str) -> Scaling:
     """The axis of a quantity, with its zero."""
     told = [each for each in drawn if not each.is_zero(quantity)]
     values = np.array([to.up * to.value * one.value for each in told for one in each.extremes(quantity)])
@@ -84,7 +86,7 @@ def _scaling(quantity: str, drawn: Sequence[Drawn], to: Scales, label: str) -> S
     return Scaling(label, low, high, named=tuple((-v, text) for v, text in ticks(Scaling(label, -high, -low), TICKS)))
 
 
-def _of_one(drawn: Drawn, quantity: str, to: Scales, y: Scaling, *, alone: bool) -> Iterator[Item]:
+def _of_one(drawn: DrawnBar, quantity: str, to: Scales, y: Scaling, *, alone: bool) -> Iterator[Item]:
     """What is drawn of a bar; alone: it is the only one, whose ordinates are hatched."""
     line, reach = drawn.lines[quantity], drawn.reaches.get(quantity)
     whose = f"{drawn.name}: " if drawn.name else ""
@@ -162,7 +164,7 @@ def stretches(s: Array, which: Mask) -> list[tuple[float, float]]:
     return [(a, b) for a, b in found if b > a]
 
 
-def _extremes(drawn: Drawn, quantity: str, to: Scales) -> Iterator[Spot]:
+def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
     """The highest and the lowest with their values, and where and when they are; what is 0 is not marked."""
     low, high = drawn.extremes(quantity)
     error, bar = drawn.bar.error(quantity), drawn.bar
@@ -170,7 +172,7 @@ def _extremes(drawn: Drawn, quantity: str, to: Scales) -> Iterator[Spot]:
     reach = drawn.reaches.get(quantity)
     steady = high.value - low.value <= error
     for one in (high,) if steady else (high, low):
-        if abs(one.value) <= error:
+        if not abs(one.value) > error:
             continue
         (value,) = write([to.value * one.value], how)
         line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest

@@ -16,23 +16,26 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from heuncli.drawing.figure import Blank, Figure, Panel, Scaling, Upright
 from heuncli.drawing.ticks import ends, short
-from heuncli.pictures.bars import UNITS, Bar
+from heuncli.pictures.bars import UNITS, WholeBar
 from heuncli.pictures.courses import Pictured
-from heuncli.pictures.diagram_panels import Drawn, diagram
+from heuncli.pictures.diagram_panels import DrawnBar, diagram
 from heuncli.report.digits import OPEN, OPEN_NOTE, rough
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
 from heuncli.results_schema import RESULTANTS
 
 TURNED = frozenset({"M2"})  # whose ordinates point against e1, where they point to the side in tension
-SIDES = {"M1": "up: side of e2", "M2": "up: side of e1"}
+SIDES = {"M1": "e2 up", "M2": "e1 up"}
 LETTERS = 0.009  # of a bar's length in a panel: what a letter of a name takes of it
 LONGEST = 60  # letters of the names at a place
 BAND = (
     "band: lowest and highest over the run at each place; line: the instant of the largest magnitude, which is marked"
 )
+TENSION = "ordinates of M1 and M2 point to the side that bending puts in tension"
 
 
 def diagrams(
@@ -61,25 +64,25 @@ def diagrams(
         banded = banded or any(each.reaches for each in drawn)
     if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
         notes.append(OPEN_NOTE)
-    words += [BAND] * banded
+    words += [BAND] * banded + [TENSION] * tension_side
     return Figure(sources[0].study.results.title, words, panels, legend, notes)
 
 
-def _drawn(sources: Sequence[Pictured], name: str, at: Sequence[float] | None) -> Iterator[Drawn]:
+def _drawn(sources: Sequence[Pictured], name: str, at: Sequence[float] | None) -> Iterator[DrawnBar]:
     """The curves of a section, each with its pen."""
     number = 0
     for source in sources:
-        bar = Bar(source.study, name)
+        bar = WholeBar(source.study, name)
         times = bar.instants
         if at is None and len(times) > 1:
             reaches = bar.reaches()
-            yield Drawn(source.name, number, bar, {q: own.line for q, own in reaches.items()}, reaches)
+            yield DrawnBar(source.name, number, bar, {q: own.line for q, own in reaches.items()}, reaches)
             number += 1
             continue
         asked = list(at) if at is not None and len(times) > 1 else times.tolist()
         for t in asked:
             parts = [source.name, f"t = {short(t)} s" if len(asked) > 1 else ""]
-            yield Drawn(": ".join(part for part in parts if part), number, bar, bar.at(t), {})
+            yield DrawnBar(": ".join(part for part in parts if part), number, bar, bar.at(t), {})
             number += 1
 
 
@@ -112,7 +115,7 @@ def _heading(source: Pictured, name: str) -> str:
     return f"{name}: what the piece of {info.body} beyond s exerts ON the part before it; N > 0 tension; {axes}"
 
 
-def _sorted_out(drawn: Sequence[Drawn]) -> tuple[list[str], list[str]]:
+def _sorted_out(drawn: Sequence[DrawnBar]) -> tuple[list[str], list[str]]:
     """Which quantities are drawn, and sentences on those that are 0 all along."""
     zero, within, shown = list[str](), list[str](), list[str]()
     for quantity in RESULTANTS:
@@ -124,13 +127,19 @@ def _sorted_out(drawn: Sequence[Drawn]) -> tuple[list[str], list[str]]:
         error = {bar.unit(q): bar.error(q) for q in within for bar in (drawn[0].bar,)}
         told = ", ".join(f"{rough(size)} {unit}" for unit, size in error.items())
         notes.append(f"0 to their stated error ({told}), and not drawn: {', '.join(within)}")
-    at_times = [q for q in shown if any(each.reaches and each.bar.open_somewhere(q) for each in drawn)]
+    at_times = [q for q in shown if any(_open_at_times(each, q) for each in drawn)]
     if at_times:
         notes.append(f"open at some instants, which the band leaves out: {', '.join(at_times)}")
     return shown, notes
 
 
-def _verdict(drawn: Drawn, quantity: str) -> str:
+def _open_at_times(drawn: DrawnBar, quantity: str) -> bool:
+    """Whether a quantity is open at some instants of a run, and not at others."""
+    known = drawn.reaches and np.isfinite(drawn.reaches[quantity].low).any()
+    return bool(known) and drawn.bar.open_somewhere(quantity)
+
+
+def _verdict(drawn: DrawnBar, quantity: str) -> str:
     """Whether a quantity is zero, zero within its error, not known, or something; what is open is something."""
     bar, size = drawn.bar, drawn.size(quantity)
     if drawn.open_in_part(quantity):
@@ -144,7 +153,7 @@ def _verdict(drawn: Drawn, quantity: str) -> str:
 
 
 def _panels(
-    name: str, drawn: Sequence[Drawn], shown: Sequence[str], units: Units, *, tension_side: bool
+    name: str, drawn: Sequence[DrawnBar], shown: Sequence[str], units: Units, *, tension_side: bool
 ) -> Iterator[Panel]:
     """The panels of a section, the first with its name and what stands along the bar."""
     unit, size = units.of("m")
@@ -161,7 +170,7 @@ def _panels(
         yield own._replace(x=x if last else x._replace(label=""), items=items, title="" if k else name)
 
 
-def _marks(bar: Bar, length: float, size: float) -> list[tuple[float, str]]:
+def _marks(bar: WholeBar, length: float, size: float) -> list[tuple[float, str]]:
     """What stands along a bar: places, and the names there; those of close ones stand together at the first."""
     found: list[tuple[float, str]] = []
     first = 0  # of those whose names stand together

@@ -41,7 +41,7 @@ class DrawnMode(NamedTuple):
     apart: bool
 
 
-class Moving(NamedTuple):
+class MovingLine(NamedTuple):
     """A line of the machine: its name, its points (n, 3), and which body they go with (n,), -1 with the ground."""
 
     name: str
@@ -71,7 +71,7 @@ def mode_shapes(found: MovedBodies, machine: Machine, view: View) -> Figure:
     return Figure(found.modes.title, about(found.modes), panels, legend, told)
 
 
-def _lines(found: MovedBodies, machine: Machine) -> Iterator[Moving]:
+def _lines(found: MovedBodies, machine: Machine) -> Iterator[MovingLine]:
     """The edges of bodies, or the lines between their points; springs, rods and ropes between theirs."""
     places = {name: k for k, name in enumerate(found.names)}
     for body in machine.bodies:
@@ -80,13 +80,13 @@ def _lines(found: MovedBodies, machine: Machine) -> Iterator[Moving]:
         if sum(map(len, own)) < 2:
             own = _cross(found.scene.mechanism.bodies[k])
         for line in own:
-            yield Moving(body.name, _in_world(found, k, line), (k,) * len(line))
+            yield MovingLine(body.name, _in_world(found, k, line), (k,) * len(line))
     ropes = [(j.name, j.a, j.p, j.b, j.q) for j in machine.joints if JOINTS[j.kind].keeps_distance]
     springs = [(one.name, one.a, one.p, one.b, one.q) for one in machine.lines]
     for name, a, p, b, q in (*springs, *ropes):
         ends = places.get(a, -1), places.get(b, -1)
         points = np.array([_in_world(found, k, at) for k, at in zip(ends, (p, q), strict=True)])
-        yield Moving(name, points, ends)
+        yield MovingLine(name, points, ends)
 
 
 def _cross(body: Body) -> list[Array]:
@@ -112,7 +112,7 @@ def _in_world(found: MovedBodies, body: int, points: Array) -> Array:
     return np.asarray(points @ found.attitudes[body].T + found.places[body])
 
 
-def _displacements(found: MovedBodies, mode: int, line: Moving) -> Array:
+def _displacements(found: MovedBodies, mode: int, line: MovingLine) -> Array:
     """How far the points of a line go, (n, 3) complex."""
     moved = [
         found.moved(mode, body, point) if body >= 0 else np.zeros(3, dtype=complex)
@@ -121,7 +121,7 @@ def _displacements(found: MovedBodies, mode: int, line: Moving) -> Array:
     return np.array(moved)
 
 
-def _drawn(found: MovedBodies, k: int, mode: Mode, lines: list[Moving], extent: float) -> DrawnMode:
+def _drawn(found: MovedBodies, k: int, mode: Mode, lines: list[MovingLine], extent: float) -> DrawnMode:
     """A mode's lines, so far from where they rest as is seen."""
     parts = [_displacements(found, k, line) for line in lines]
     whole = np.concatenate(parts)
@@ -151,7 +151,7 @@ def _title(k: int, mode: Mode, found: MovedBodies) -> str:
 
 
 def _panel(
-    mode: DrawnMode, lines: list[Moving], supports: list[Array], view: View, axes: tuple[Scaling, Scaling]
+    mode: DrawnMode, lines: list[MovingLine], supports: list[Array], view: View, axes: tuple[Scaling, Scaling]
 ) -> Panel:
     """A mode: at rest, and displaced."""
     items: list[Item] = []

@@ -22,14 +22,14 @@ LEFT = "with the counterweights"
 PEN, PEN_LEFT = 0, 1
 
 
-class Balanced(NamedTuple):
+class BalancedScene(NamedTuple):
     """A balance in a figure, and how it is called there: its file and case; nothing where it is the only one."""
 
     name: str
     found: BalanceResults
 
 
-def orders(sources: Sequence[Balanced], units: Units) -> Figure:
+def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
     """The figure of some balances: a panel a quantity, the same of all with the same ends."""
     panels = []
     for quantity in NAMES:
@@ -54,7 +54,7 @@ def _left(found: BalanceResults) -> Mapping[str, tuple[OrderRow, ...]]:
     return {} if found.counterbalance is None else found.counterbalance.orders
 
 
-def _panel(source: Balanced, quantity: str, high: float, units: Units) -> Panel:
+def _panel(source: BalancedScene, quantity: str, high: float, units: Units) -> Panel:
     """The bars of one quantity, an order beside the other."""
     found = source.found
     unit, size = units.of(unit_of(found, quantity))
@@ -82,7 +82,7 @@ def _written(sizes: Mapping[float, float], places: Mapping[float, float], larges
             yield Spot(places[order], value, f"{value:.4g}", PEN, filled=True)
 
 
-def _words(source: Balanced) -> Iterator[str]:
+def _words(source: BalancedScene) -> Iterator[str]:
     """The cycle, and what becomes of its orders, as `heun balance` tells them."""
     found = source.found
     called = f"{source.name}: " if source.name else ""

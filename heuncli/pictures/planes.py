@@ -17,6 +17,7 @@ from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
 
 LETTERS = ("x", "y", "z")
+OF_JOINTS = ("joints", "coordinates")
 FLAT = 1e-9  # of the largest vector: what a component may be that is none
 
 
@@ -59,7 +60,7 @@ def plane_across(axis: Array) -> Plane:
 def attitudes_for(paths: Sequence[str], spec: Spec) -> list[str]:
     """What of the results tells how the axes of the joints among some paths turn, as paths."""
     words = [path.split(".") for path in paths]
-    joints = [spec.joints[word[1]] for word in words if word[0] == "joints" and word[1] in spec.joints]
+    joints = [spec.joints[word[1]] for word in words if word[0] in OF_JOINTS and word[1] in spec.joints]
     bodies = dict.fromkeys(body for joint in joints for body in (joint.a, joint.b) if body != GROUND)
     return [f"bodies.{body}.rotation" for body in bodies]
 

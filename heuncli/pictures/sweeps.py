@@ -15,8 +15,9 @@ from heuncli.drawing.figure import Band, Bars, Cells, Figure, Item, Panel, Scali
 from heuncli.drawing.pens import PENS
 from heuncli.drawing.ticks import ends
 from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.certain import certain
 from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, picked
+from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, example, picked
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Indices
 
@@ -31,7 +32,7 @@ NAMES_WIDE, NAMES_MOST = 100, 12  # letters and names below an axis; more are nu
 EVEN = 1e-6  # of steps between values: those of equal steps
 
 
-class Axis(NamedTuple):
+class VariableAxis(NamedTuple):
     """A variable along an axis: its places (n,) of all rows, its levels, how these are told, and what is numbered."""
 
     variable: SweptVariable
@@ -84,7 +85,7 @@ def _curves(own: PickedTable, units: Units) -> Drawn:
             order = rows[np.argsort(across.values[rows], kind="stable")]
             own_x, values = across.values[order], size * measure.values[order]
             items += _curve(name or measure.text, own_x, values, size * measure.errors[order], y, number)
-            items += _points(across, own_x, values, number, marked=len(groups) == 1)
+            items += _points(across, measure, size, order, number, marked=len(groups) == 1)
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
     return _named_below(panels), legend, [x.note] if x.note else []
@@ -108,11 +109,8 @@ def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str
     if len(combinations) > len(PENS):
         names = ", ".join(one.name for one in own.varied)
         message = f"{own.table.origin}: {len(own.varied)} variables ({names}) would make {len(combinations)} curves"
-        one = others[0]
-        hint = (
-            f"hold some, as {one.name}={one.word(one.levels[0])}, until two vary or at most {len(PENS)} curves are left"
-        )
-        raise NotDrawable(message, hint)
+        held = example(others[0])
+        raise NotDrawable(message, f"hold some, as {held}, until two vary or at most {len(PENS)} curves are left")
     found = []
     for values in combinations:
         mask = np.ones(own.table.rows, dtype=bool)
@@ -130,15 +128,19 @@ def _curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, number
     yield Trace(name, x, values, number)
 
 
-def _points(across: SweptVariable, x: Array, values: Array, number: int, *, marked: bool) -> Iterator[Spot]:
+def _points(
+    across: SweptVariable, measure: SweptNumbers, size: float, order: Indices, number: int, *, marked: bool
+) -> Iterator[Spot]:
     """The points of a curve, where they are few; marked: the greatest and the least with their places."""
+    x, values, errors = across.values[order], size * measure.values[order], size * measure.errors[order]
     known = np.flatnonzero(np.isfinite(values))
     if not len(known):
         return
     high, low = int(np.nanargmax(values)), int(np.nanargmin(values))
     best = [high, low] if marked and values[high] > values[low] else []
     for k in best:
-        yield Spot(float(x[k]), float(values[k]), f"{values[k]:.5g} at {across.word(x[k])}", number, filled=True)
+        text = f"{certain(float(values[k]), float(errors[k]))} at {across.word(x[k])}"
+        yield Spot(float(x[k]), float(values[k]), text, number, filled=True)
     alone = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
     for k in known.tolist() if len(x) <= MARKED else alone:
         if k not in best:
@@ -161,8 +163,8 @@ def _bars(own: PickedTable, units: Units) -> Drawn:
             low, high = np.column_stack([at, middle - off]), np.column_stack([at, middle + off])
             items.append(Strokes(np.stack([low, high], axis=1), width=1.4))
         items += [
-            Spot(float(a), float(b), f"{b:.5g}", 0, filled=True)
-            for a, b in zip(across.values, values, strict=True)
+            Spot(a, b, certain(b, error), 0, filled=True)
+            for a, b, error in zip(across.values.tolist(), values.tolist(), errors.tolist(), strict=True)
             if np.isfinite(b) and len(values) <= NAMES_MOST
         ]
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
@@ -174,7 +176,7 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
     across, upward = own.varied
     if len(across.levels) * len(upward.levels) > MOST_CELLS:
         message = f"{own.table.origin}: {len(across.levels)} by {len(upward.levels)} cells; at most {MOST_CELLS:,}"
-        raise NotDrawable(message, f"hold one, as {across.name}={across.word(across.levels[0])}")
+        raise NotDrawable(message, f"hold one, as {example(across)}")
     x, y = _axis(across, cells=True), _axis(upward, cells=True)
     panels: list[Panel] = []
     notes = [one.note for one in (x, y) if one.note]
@@ -210,7 +212,8 @@ def _least_and_greatest(
     found = []
     for name, k in (("least", int(np.nanargmin(measure.values))), ("greatest", int(np.nanargmax(measure.values)))):
         place = ", ".join(f"{one.name} = {one.word(one.values[k])}" for one in variables)
-        found.append(f"{name} {size * measure.values[k]:.6g} {unit}".rstrip() + f" at {place}")
+        value = certain(size * float(measure.values[k]), size * float(measure.errors[k]))
+        found.append(f"{name} {value} {unit}".rstrip() + f" at {place}")
     return f"{measure.text}: {'; '.join(found)}"
 
 
@@ -236,7 +239,7 @@ def _scatter(own: PickedTable, units: Units) -> Drawn:
     return panels, [], notes + [note for one in chosen if (note := _axis(one).note)]
 
 
-def _axis(variable: SweptVariable, *, cells: bool = False) -> Axis:
+def _axis(variable: SweptVariable, *, cells: bool = False) -> VariableAxis:
     """A variable along an axis; cells: each of its values has a cell."""
     levels = variable.levels
     if variable.texts:
@@ -248,14 +251,14 @@ def _axis(variable: SweptVariable, *, cells: bool = False) -> Axis:
             named=tuple(zip(levels.tolist(), told, strict=True)),
         )  # fmt: skip
         pairs = ", ".join(f"{k} {name}" for k, name in zip(told, names, strict=True))
-        return Axis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
+        return VariableAxis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
     by_ratio = _by_ratio(levels)
     if cells:
         edges = _between(levels, by_ratio)
-        return Axis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
+        return VariableAxis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
     if by_ratio:
-        return Axis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
-    return Axis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
+        return VariableAxis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
+    return VariableAxis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
 
 
 def _by_ratio(levels: Array) -> bool:

@@ -132,15 +132,15 @@ def _held(variable: SweptVariable, text: str) -> Mask:
         figure = figure_of(text)
         if figure is None or figure.unit not in ("", variable.unit):
             unit = f" in {variable.unit}" if variable.unit else ""
-            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {_example(variable)}")
+            raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {example(variable)}")
         found = np.isclose(variable.values, figure.value, rtol=SAME, atol=0.0)
     if not found.any():
-        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {_example(variable)}")
+        raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {example(variable)}")
     return np.asarray(found)
 
 
-def _example(variable: SweptVariable) -> str:
-    """A value that is there, as it is typed."""
+def example(variable: SweptVariable) -> str:
+    """A value that is there, as it is typed: NAME=VALUE."""
     levels = variable.levels
     if variable.texts:
         return f"{variable.name}={shown(variable.texts[int(levels[0])])}"

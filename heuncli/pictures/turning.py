@@ -21,18 +21,24 @@ from heuncli.study.ask.study import Study
 
 TURN = 2.0 * math.pi
 SAME = 2e-3  # of the largest vector: a pixel of the picture
+CLOSELY = 721  # instants of what is drawn
 COMPARED = 128  # angles of a cycle at which it is held against the one before
 ALMOST = 1e-6  # of a turn: a run that was to end with it
 VectorsAt = Callable[[Array], Array]  # of instants (n,) what is looked at there, (n, ...)
 
 
-class Turning(NamedTuple):
+class TurningRun(NamedTuple):
     """The instants of a run that are seen, its angle if it turns on in one, and how many turns come back (0: none)."""
 
     times: Array
     path: str
     angles: Array
     turns: int
+
+    @property
+    def way(self) -> float:
+        """1 where the angle rises, -1 where it falls."""
+        return 1.0 if self.angles[-1] > self.angles[0] else -1.0
 
     @property
     def counted(self) -> Array:
@@ -60,13 +66,13 @@ def angles_of(spec: Spec) -> list[str]:
     return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
 
 
-def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> Turning:
+def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> TurningRun:
     """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
-    whole = Turning(times, "", np.zeros(0), 0)
+    whole = TurningRun(times, "", np.zeros(0), 0)
     for path in candidates:
         angles = numbers_at(study, path, times)
         if np.isfinite(angles).all() and (goes_on(angles) and span(angles) > span(whole.angles)):
-            whole = Turning(times, path, angles, 0)
+            whole = TurningRun(times, path, angles, 0)
     for turns in (1, 2):
         if whole.path and comes_back(study, whole, turns, vectors_at):
             return last_of(study, whole, turns)
@@ -84,28 +90,34 @@ def span(angles: Array) -> float:
     return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
 
 
-def comes_back(study: Study, whole: Turning, turns: int, vectors_at: VectorsAt) -> bool:
+def comes_back(study: Study, whole: TurningRun, turns: int, vectors_at: VectorsAt) -> bool:
     """Whether the last so many turns are as those before them."""
-    angle = TURN * turns
-    if span(whole.angles) < 2.0 * angle - ALMOST * TURN:
+    angle = whole.way * TURN * turns
+    if span(whole.angles) < 2.0 * abs(angle) - ALMOST * TURN:
         return False
-    sign = 1.0 if whole.angles[-1] > whole.angles[0] else -1.0
-    back = sign * angle * np.linspace(1.0, 0.0, COMPARED)
-    last, before = (vectors_at(instants_at(whole, whole.angles[-1] - back - k * sign * angle)) for k in (0, 1))
+    near = seen_from(study, whole, float(instants_at(whole, whole.angles[-1:] - 2.0 * angle)[0]))
+    back = angle * np.linspace(1.0, 0.0, COMPARED)
+    last, before = (vectors_at(instants_at(near, near.angles[-1] - back - k * angle)) for k in (0, 1))
     size = float(np.nanmax(np.abs(last), initial=0.0))
     return bool(np.nanmax(np.abs(last - before), initial=0.0) <= SAME * size)
 
 
-def last_of(study: Study, whole: Turning, turns: int) -> Turning:
+def last_of(study: Study, whole: TurningRun, turns: int) -> TurningRun:
     """The last so many turns of a run."""
-    sign = 1.0 if whole.angles[-1] > whole.angles[0] else -1.0
-    begin = float(instants_at(whole, np.array([whole.angles[-1] - sign * TURN * turns]))[0])
-    even = np.linspace(begin, whole.times[-1], len(whole.times))
+    angle = whole.way * TURN * turns
+    near = seen_from(study, whole, float(instants_at(whole, whole.angles[-1:] - 2.0 * angle)[0]))
+    begin = float(instants_at(near, near.angles[-1:] - angle)[0])
+    return seen_from(study, whole, begin)._replace(turns=turns)
+
+
+def seen_from(study: Study, whole: TurningRun, begin: float) -> TurningRun:
+    """A run from an instant on, looked at closely."""
+    even = np.linspace(begin, whole.times[-1], CLOSELY)
     times = np.unique(np.concatenate([even, whole.times[whole.times > begin]]))
-    return Turning(times, whole.path, numbers_at(study, whole.path, times), turns)
+    return TurningRun(times, whole.path, numbers_at(study, whole.path, times), 0)
 
 
-def instants_at(turning: Turning, angles: Array) -> Array:
+def instants_at(turning: TurningRun, angles: Array) -> Array:
     """The instants at which a run has some angles, on the line between those at which it was seen, (n,)."""
-    order = slice(None) if turning.angles[-1] > turning.angles[0] else slice(None, None, -1)
+    order = slice(None, None, int(turning.way))
     return np.asarray(np.interp(angles, turning.angles[order], turning.times[order]))

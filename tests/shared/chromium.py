@@ -23,7 +23,8 @@ NAMES = ("chromium-headless-shell", "chromium", "chromium-browser", "google-chro
 FLAGS = (
     "--headless", "--no-sandbox", "--remote-debugging-pipe", "--disable-gpu", "--disable-quic", "--no-first-run",
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-extensions",
-    "--disable-dev-shm-usage", "--hide-scrollbars", "--mute-audio", "--force-color-profile=srgb", "about:blank",
+    "--disable-dev-shm-usage", "--disable-smooth-scrolling", "--hide-scrollbars", "--mute-audio",
+    "--force-color-profile=srgb", "about:blank",
 )  # fmt: skip
 PATIENCE = 60.0  # seconds for an answer: not how fast it is, but whether one comes
 OWN = ("file:", "data:", "blob:", "about:")  # addresses that need no network
@@ -91,15 +92,20 @@ class Chromium:
         self._heard, self._number = b"", 0
         self._tabs: dict[str, Tab] = {}
         self._answers: dict[int, dict[str, Any]] = {}
-        self._blank: Tab | None = None
+        (first,) = (told for told in self.send("Target.getTargets")["targetInfos"] if told["type"] == "page")
+        self._blank = self._attached(first["targetId"])
+
+    def _attached(self, target: str) -> Tab:
+        """A page that is there."""
+        session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
+        return self._tabs.setdefault(session, Tab(self, target, session))
 
     def tab(self, width: int = 1000, height: int = 700, dark: bool = False) -> Tab:
-        """A new empty page."""
-        target = self.send("Target.createTarget", url="about:blank")["targetId"]
-        session = self.send("Target.attachToTarget", targetId=target, flatten=True)["sessionId"]
-        found = self._tabs[session] = Tab(self, target, session)
+        """A new empty page, before all others: those behind it draw nothing."""
+        found = self._attached(self.send("Target.createTarget", url="about:blank")["targetId"])
         for domain in ("Page", "Runtime", "Log", "Network"):
             found.send(f"{domain}.enable")
+        found.send("Emulation.setFocusEmulationEnabled", enabled=True)
         found.sized(width, height)
         scheme = {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}
         found.send("Emulation.setEmulatedMedia", features=[scheme])
@@ -115,7 +121,6 @@ class Chromium:
 
     def seen(self, png: bytes) -> Seen:
         """What is on a screenshot."""
-        self._blank = self._blank or self.tab()
         told = self._blank.evaluate(f"({SEEN})({json.dumps(base64.b64encode(png).decode())})")
         return Seen(told["colours"], told["box"], told["marked"], told["size"], told["corner"], png)
 
@@ -186,14 +191,16 @@ class Tab:
         elif method == "Page.javascriptDialogOpening":
             self.faults.append(f"dialog: {told['message']}")
 
-    def go(self, address: str) -> None:
-        """Open an address and wait until all of it is loaded and drawn."""
+    def go(self, address: str, scripts: bool = True) -> None:
+        """Open an address and wait until all of it is loaded and drawn; scripts: whether the page may run its own."""
         self._loaded = False
+        self.send("Emulation.setScriptExecutionDisabled", value=not scripts)
         self.send("Page.navigate", url=address)
         deadline = time.monotonic() + PATIENCE
         while not self._loaded:
             self.browser.listen(deadline)
-        self.drawn()
+        if scripts:
+            self.drawn()
 
     def sized(self, width: int, height: int) -> None:
         """Give the page a window of a size [pixels], at one device pixel each."""
@@ -202,7 +209,8 @@ class Tab:
 
     def evaluate(self, script: str) -> Any:
         """The value of an expression in the page, awaited. Raises RuntimeError with what the script threw."""
-        told = self.send("Runtime.evaluate", expression=script, returnByValue=True, awaitPromise=True, userGesture=True)
+        how = {"returnByValue": True, "awaitPromise": True, "userGesture": True, "allowUnsafeEvalBlockedByCSP": False}
+        told = self.send("Runtime.evaluate", expression=script, **how)
         if "exceptionDetails" in told:
             details = told["exceptionDetails"]
             raise RuntimeError(details.get("exception", {}).get("description", details["text"]))
@@ -264,7 +272,8 @@ class Tab:
         clip = {}
         if selector is not None:
             left, top, width, height = self.box(selector)
-            clip = {"clip": {"x": left, "y": top, "width": width, "height": height, "scale": 1}}
+            x, y = self.evaluate("[scrollX, scrollY]")  # a part is told by its place on the whole page
+            clip = {"clip": {"x": left + x, "y": top + y, "width": width, "height": height, "scale": 1}}
         self.drawn()
         png = base64.b64decode(self.send("Page.captureScreenshot", format="png", **clip)["data"])
         return self.browser.seen(png)

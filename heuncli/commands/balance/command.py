@@ -29,9 +29,9 @@ def main(request: BalanceRequest) -> int:
     found = balance(spec, options(request, spec))
     if drawn is not None and request.save is not None:
         from heuncli.drawing.layout import laid_out
-        from heuncli.pictures.orders import Balanced, orders
+        from heuncli.pictures.orders import BalancedScene, orders
 
-        save(as_file(laid_out(orders([Balanced("", found)], Units())), drawn), request.save)
+        save(as_file(laid_out(orders([BalancedScene("", found)], Units())), drawn), request.save)
     if form == "json":
         text = dump(report.block(found))
     else:

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from heuncli.cli.guard import require_other_file
+from heuncli.cli.left_out import named
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.modes import page as report
 from heuncli.commands.modes.request import ModesRequest
-from heuncli.commands.modes.without import named, without
 from heuncli.oscillations.study import modes
+from heuncli.oscillations.without import without
 from heuncli.report.export import dump
 from heuncli.spec.load import load
 

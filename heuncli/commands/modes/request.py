@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, FORMAT, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, WITHOUT
 from heuncli.named_tuples import NamedTuple
 
 
@@ -14,13 +14,6 @@ class ModesRequest(NamedTuple):
     output: Annotated[str | None, OUTPUT] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
-    without: Annotated[
-        tuple[str, ...],
-        Option(
-            ("--without",),
-            "Leave out these forces, and hold these drives where they start. May be repeated.",
-            "NAME,...",
-        ),
-    ] = ()
+    without: Annotated[tuple[str, ...], WITHOUT] = ()
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

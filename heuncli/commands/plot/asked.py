@@ -34,7 +34,7 @@ def asked(words: Sequence[str]) -> PlotAsked:
         raise _refused("no spec is named", USAGE)
     if not all(words):
         raise _refused("an empty word", USAGE)
-    swept = [file for file in files if PurePath(file).suffix.lower() in SWEEPS]
+    swept = [file for file in files if _ending(file) in SWEEPS]
     if swept:
         if len(swept) < len(files):
             raise _refused(f"{', '.join(files)}: specs and sweeps in one picture", "call it once for each")
@@ -62,7 +62,13 @@ def _of_paths(paths: Sequence[str]) -> str:
 
 def _is_file(word: str, *, first: bool) -> bool:
     """Whether a word names a file: by how it ends; the first one also because it is there."""
-    return word == STDOUT or PurePath(word).suffix.lower() in (*SPECS, *SWEEPS) or (first and _is_there(word))
+    return word == STDOUT or _ending(word) in (*SPECS, *SWEEPS) or (first and _is_there(word))
+
+
+def _ending(word: str) -> str:
+    """How a name ends; of one sweep of a store, as sweep.sqlite:2, how that of the store does."""
+    name, colon, number = word.rpartition(":")
+    return PurePath(name if colon and number.isdecimal() else word).suffix.lower()
 
 
 def _is_there(word: str) -> bool:

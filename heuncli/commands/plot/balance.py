@@ -9,7 +9,7 @@ from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.commands.plot.sources import require_no_paths, specs_of
 from heuncli.drawing.figure import Figure
-from heuncli.pictures.orders import Balanced, orders
+from heuncli.pictures.orders import BalancedScene, orders
 
 
 def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
@@ -17,6 +17,6 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     require_no_paths(asked)
     sources = []
     for name, spec in specs_of(asked.files, request):
-        sources.append(Balanced(name, balance(spec)))
+        sources.append(BalancedScene(name, balance(spec)))
         warn(spec, None, request.quiet)
     return orders(sources, units(request.units))

@@ -27,7 +27,7 @@ KINDS = {
     "sections": PictureKind("section diagrams", ("at", "tension_side", *SOLVING)),
     "polar": PictureKind("polar diagrams", ("axes", "view", *SOLVING)),
     "scene": PictureKind("scenes", ("at", "view", *SOLVING)),
-    "modes": PictureKind("mode shapes", ("view", *SCENE)),
+    "modes": PictureKind("mode shapes", ("view", "without", *SCENE)),
     "balance": PictureKind("harmonics by orders", SCENE),
     "sweep": PictureKind("sweeps", ()),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.cli.entry import UsageError
+from heuncli.cli.left_out import named
 from heuncli.cli.solving import warn
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
@@ -12,6 +13,7 @@ from heuncli.commands.plot.sources import require_no_paths, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Finding, Problem
 from heuncli.oscillations.moved_bodies import MovedBodies, moved_bodies
+from heuncli.oscillations.without import without
 from heuncli.pictures.mode_shapes import mode_shapes
 from heuncli.scenery.machine import machine_of
 from heuncli.scenery.views import AZIMUTH, ELEVATION, View, turned, usual, view_of
@@ -25,7 +27,8 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
         message = f"heun plot modes: of one scene in one case, and {len(specs)} are named"
         raise UsageError(Problem("bad-option", message, hint="call it once for each"))
     ((_, spec),) = specs
-    found = moved_bodies(spec)
+    entries = named(spec, request.without)
+    found = moved_bodies(without(spec, entries), entries)
     warn(spec, None, request.quiet)
     return mode_shapes(found, machine_of(spec), _view(found, request))
 

@@ -38,9 +38,10 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     for _, spec in specs:
         measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
         _require_vectors(paths, spec)
-    sources = [
-        solution(name, spec, [*paths, *angles_of(spec), *attitudes_for(paths, spec)], request) for name, spec in specs
-    ]
+    sources = []
+    for name, spec in specs:
+        needed = [*paths, *angles_of(spec)]
+        sources.append(solution(name, spec, [*needed, *attitudes_for(needed, spec)], request))
     return polar(sources, paths, units(request.units), axes, view)
 
 

@@ -11,6 +11,7 @@ from heuncli.cli.options import (
     STEP,
     TIME_LIMIT,
     TOLERANCE,
+    WITHOUT,
     Option,
 )
 from heuncli.named_tuples import NamedTuple
@@ -54,6 +55,7 @@ class PlotRequest(NamedTuple):
     tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
         False
     )
+    without: Annotated[tuple[str, ...], WITHOUT] = ()
     width: Annotated[int | None, Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()

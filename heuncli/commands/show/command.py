@@ -60,7 +60,7 @@ def _output(request: ShowRequest) -> str | None:
     name = request.output
     if name is None:
         if request.glb is None:
-            message = "heun show: where the page goes is not said"
+            message = "where the page goes is not said"
             raise UsageError(Problem("bad-option", message, hint="-o machine.html; -o - for standard output"))
         return None
     if name != STDOUT:
@@ -98,5 +98,5 @@ def _most(frames: int | None) -> int:
 def _require_few(spec: Spec) -> None:
     """No more bodies than a page bears. Raises LimitError."""
     if len(spec.bodies) > MOST_BODIES:
-        message = f"heun show: the scene has {len(spec.bodies):,} bodies; a page shows at most {MOST_BODIES}"
+        message = f"the scene has {len(spec.bodies):,} bodies; a page shows at most {MOST_BODIES}"
         raise LimitError(Problem("output-size", message, hint="heun run tells the loads of any number of bodies"))

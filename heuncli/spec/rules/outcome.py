@@ -51,12 +51,12 @@ class UnknownWord(NamedTuple):
     known: Collection[str]
 
 
-class Words(NamedTuple):
+class InWords(NamedTuple):
     """What stands there is text, or names: no number."""
 
 
 # a Finding tells what is wrong with the place along a run of cuts; None: of what could not be read
-Result: TypeAlias = NumberKind | UnknownWord | Words | Finding | None
+Result: TypeAlias = NumberKind | UnknownWord | InWords | Finding | None
 ONLY_THE_RUN_TELLS = NumberKind((), (), timed=False, known=False)
 
 
@@ -87,7 +87,7 @@ def result(path: list[str], names: Names, runs: Mapping[str, bool]) -> Result:
     if not isinstance(reached, Reached):
         return reached
     if not reached.quantity.units:
-        return Words() if reached.quantity.is_words else ONLY_THE_RUN_TELLS
+        return InWords() if reached.quantity.is_words else ONLY_THE_RUN_TELLS
     run, at_a_blow = False, reached.keys[0] == BLOWS
     keys = reached.keys[2:] if at_a_blow else reached.keys
     if keys[0] == "sections":
@@ -172,7 +172,7 @@ def wrong_path(path: str, names: Names, runs: Mapping[str, bool]) -> tuple[str, 
     reached = result(words_of(path), names, runs)
     if isinstance(reached, Finding):
         return f"'{path}': {reached.message}", reached.hint
-    if isinstance(reached, Words):
+    if isinstance(reached, InWords):
         return f"'{path}' is words, not a number", words_hint(path)
     if not isinstance(reached, UnknownWord):
         return None

@@ -1,4 +1,4 @@
-"""`--without`: the scene without what excites it: forces are left out, drives are held where they start."""
+"""`--without`: which forces and drives are left out of a scene, by their names."""
 
 from __future__ import annotations
 
@@ -6,13 +6,8 @@ from collections.abc import Sequence
 
 from heuncli.cli.entry import UsageError
 from heuncli.errors import Problem
-from heuncli.expressions.programs import Expression
-from heuncli.joint_kinds import RATES
 from heuncli.nearest import did_you_mean
-from heuncli.records import replace
-from heuncli.spec.models import Drive, Spec
-
-KINDS = ("forces", "drives")
+from heuncli.spec.models import Spec
 
 
 def named(spec: Spec, words: Sequence[str]) -> tuple[str, ...]:
@@ -45,23 +40,3 @@ def problem(spec: Spec, name: str, found: Sequence[str]) -> Problem:
     plain = [entry.partition(".")[2] for entry in known(spec)]
     hint = did_you_mean(name, known(spec) if "." in name else plain, "forces and drives")
     return Problem("bad-option", f"--without {name}: no force or drive has this name", hint=hint or "")
-
-
-def without(spec: Spec, entries: Sequence[str]) -> Spec:
-    """The spec without some forces, and with some drives held where they start."""
-    drives = dict(spec.drives)
-    joints = dict(spec.joints)
-    t = float(spec.analysis.times[0]) if spec.analysis.type == "state" else 0.0
-    for name, drive in spec.drives.items():
-        if f"drives.{name}" in entries:
-            drives[name] = held(drive, t)
-            if drive.quantity != "length":  # a rod's is held with no rate beside it
-                joints[drive.joint] = replace(joints[drive.joint], **{RATES[drive.quantity]: None})
-    forces = {name: force for name, force in spec.forces.items() if f"forces.{name}" not in entries}
-    return spec._replace(forces=forces, drives=drives, joints=joints)
-
-
-def held(drive: Drive, t: float) -> Drive:
-    """A drive that keeps its coordinate as it has it at the start."""
-    value = 0.0 if drive.by_rate else drive.value.value(t)
-    return replace(drive, value=Expression.of(value, drive.value.location))

@@ -1,0 +1,69 @@
+"""The orders of a cycle as bars, read back against the JSON of `heun balance`."""
+
+from __future__ import annotations
+
+import json
+import re
+import xml.etree.ElementTree as tree
+from pathlib import Path
+
+import pytest
+
+from tests.shared.command import Heun
+from tests.shared.plotted import SVG, PlottedPanel, panels_of, points_of, texts_of
+
+SPECS = Path(__file__).parents[2] / "specs"
+CRANK, ENGINE = str(SPECS / "slider_crank.yaml"), str(SPECS / "engine.yaml")
+LAST = 7  # of the orders that tables of these two show
+
+
+def bars(panel: PlottedPanel) -> list[float]:
+    """How high the bars of a panel are, from the left."""
+    areas = [points_of(e) for e in panel.root.iter(f"{SVG}polygon") if e.findtext(f"{SVG}title")]
+    return [float(panel.y.values(points[:, 1].min())) for points in areas if panel.holds(points)]
+
+
+@pytest.mark.parametrize("spec", [CRANK, ENGINE])
+def test_bars_are_as_high_as_the_orders(heun: Heun, spec: str) -> None:
+    assert heun("plot", spec, "balance", "-o", "drawn.svg").returncode == 0
+    found = json.loads(heun("balance", spec, "--format", "json").stdout)
+    text = Path("drawn.svg").read_text()
+    panels = panels_of(text)
+    assert len(panels) == len(found["harmonics"])
+    for panel, rows in zip(panels, found["harmonics"].values(), strict=True):
+        sizes = {row["order"]: sum(a * a for a in row["amplitude"]) ** 0.5 for row in rows}
+        shown = [size for order, size in sizes.items() if size > 0.0 and order in range(1, LAST + 1)]
+        assert bars(panel) == pytest.approx(shown, abs=abs(panel.y.step))
+
+
+def test_the_words_are_those_of_the_tables(heun: Heun) -> None:
+    heun("plot", CRANK, "balance", "-o", "drawn.svg")
+    words = "\n".join(texts_of(Path("drawn.svg").read_text()))
+    table = heun("balance", CRANK).stdout
+    assert "force: orders 1, 2 (along x) and 4 (along x) remain" in words
+    assert "orders 1, 2 (along x) and 4 (along x) remain" in re.sub(r"\s+", " ", table)
+    assert "about O = (0, 0, 0) m" in words and "one turn of main.angle" in words
+
+
+def test_save_draws_the_same_and_counterweights_beside_it(heun: Heun) -> None:
+    heun("plot", CRANK, "balance", "-o", "one.svg")
+    heun("balance", CRANK, "--save", "two.svg")
+    assert Path("one.svg").read_bytes() == Path("two.svg").read_bytes()
+    heun("balance", CRANK, "--counterweight", "crank.main", "--save", "three.svg", "-o", "three.json")
+    left = json.loads(Path("three.json").read_text())["left"]["harmonics"]["force"]
+    panel = panels_of(Path("three.svg").read_text())[0]
+    diamonds = [points_of(e) for e in tree.parse("three.svg").iter(f"{SVG}polygon") if e.get("fill") == "#d55e00"]
+    first = next(points for points in diamonds if panel.holds(points))
+    size = sum(a * a for a in left[0]["amplitude"]) ** 0.5
+    assert panel.y.values(first[:, 1]).mean() == pytest.approx(size, abs=abs(panel.y.step))
+
+
+def test_units_and_refusals(heun: Heun) -> None:
+    heun("plot", CRANK, "balance", "--units", "kN,mm", "-o", "drawn.svg")
+    words = texts_of(Path("drawn.svg").read_text())
+    assert "[kN]" in words and "[kN·mm]" in words
+    for more, why in [(("joints.main",), "of the whole scene"), (("--view", "x"), "--view")]:
+        done = heun("plot", CRANK, "balance", *more, "-o", "other.svg")
+        assert done.returncode == 2 and why in done.stderr and not Path("other.svg").exists()
+    done = heun("plot", str(SPECS / "door.yaml"), "balance", "-o", "other.svg")
+    assert done.returncode == 3 and "no-cycle" in done.stderr and not Path("other.svg").exists()

@@ -1,0 +1,153 @@
+"""Polar diagrams, read back from the drawing: a rotor's is a circle, an engine's goes through its JSON's numbers."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.shared.command import Heun
+from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
+
+SPECS = Path(__file__).parents[2] / "specs"
+ROTOR, ENGINE = str(SPECS / "rotor.yaml"), str(SPECS / "engine.yaml")
+SHAFT, DISC, m, e, g, n = 7850 * np.pi * 0.015**2 * 0.6, 12.0, 0.02, 0.04, 9.81, 3000 * np.pi / 30
+WEIGHT, UNBALANCE = (SHAFT + DISC) * g / 2, 2 / 3 * m * e * n**2  # on the right bearing
+CRANK = """\
+heun: 1
+title: A crank that is turned
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  crank: {mass: 2, center: [0.1, 0, 0], inertia: [0.01, 0.01, 0.01], points: {o: [0, 0, 0]}}
+joints:
+  main: {type: pin, from: ground.O, to: crank.o, axis: [0, 0, 1]}
+drives: {motor: {joint: main, angle: LAW}}
+analysis: {duration: 3, samples: 301}
+"""
+
+
+def drawn(heun: Heun, *words: str) -> tuple[list[PlottedPanel], str]:
+    """The panels of what `heun plot` draws, and all that is written."""
+    done = heun("plot", *words, "-o", "drawn.svg")
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    text = Path("drawn.svg").read_text()
+    assert not re.search(r"\b(nan|inf)\b", text)
+    return panels_of(text, equal=True), "\n".join(texts_of(text))
+
+
+def test_a_rotors_is_a_circle_about_its_weight(heun: Heun) -> None:
+    (panel,), _ = drawn(heun, ROTOR, "polar", "joints.right")
+    (curve,) = panel.lines("joints.right.force")
+    radii = np.hypot(curve[:, 0], curve[:, 1] - WEIGHT - 2 / 3 * m * g)
+    assert np.abs(radii - UNBALANCE).max() < panel.pixel
+    assert np.ptp(np.arctan2(curve[:, 1] - WEIGHT, curve[:, 0])) > 6.0
+
+
+def test_in_the_rotors_axes_it_is_the_weight_that_turns(heun: Heun) -> None:
+    (panel,), words = drawn(heun, ROTOR, "polar", "joints.right", "--axes", "to")
+    (curve,) = panel.lines("joints.right.force")
+    radii = np.hypot(curve[:, 0], curve[:, 1] - UNBALANCE)
+    assert np.abs(radii - WEIGHT - 2 / 3 * m * g).max() < panel.pixel
+    assert "in the axes of rotor (`to`)" in words
+
+
+def test_the_curve_goes_through_the_numbers_of_the_json(heun: Heun) -> None:
+    (panel,), words = drawn(heun, ENGINE, "polar", "joints.main")
+    (curve,) = panel.lines("joints.main.force")
+    found = json.loads(heun("run", ENGINE, "--format", "json").stdout)
+    force = np.array(found["joints"]["main"]["force"])
+    assert far_from(force[:, 1:], curve) < panel.pixel
+    peak = json.loads(heun("run", ENGINE, "--measure", "max joints.main.radial", "--format", "json").stdout)
+    largest = re.search(r"largest ([\d.]+) N towards ([\d.]+)°.* at t = ([\d.]+) s, .*angle = ([\d.]+)°", words)
+    assert largest is not None
+    value, towards, at, angle = map(float, largest.groups())
+    assert value == pytest.approx(peak["value"], rel=1e-5) and at == pytest.approx(peak["at"], rel=1e-4)
+    (spot,) = panel.spots(filled=True)
+    assert np.hypot(*spot) == pytest.approx(value, abs=panel.pixel)
+    assert np.degrees(np.arctan2(spot[1], spot[0])) == pytest.approx(towards, abs=0.5)
+    turned = np.degrees(np.interp(at, found["time"], found["coordinates"]["main"]["angle"]))
+    assert angle == pytest.approx(turned, abs=0.1)
+
+
+def test_units_are_those_asked_for(heun: Heun) -> None:
+    (panel,), words = drawn(heun, ROTOR, "polar", "joints.right", "--units", "kN")
+    (curve,) = panel.lines("joints.right.force")
+    assert curve[:, 1].max() == pytest.approx(1e-3 * (WEIGHT + UNBALANCE + 2 / 3 * m * g), abs=panel.pixel)
+    assert "force.z [kN]" in words
+
+
+def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path) -> None:
+    (folder / "even.yaml").write_text(CRANK.replace("LAW", '"2*pi*t"'))
+    (panel,), words = drawn(heun, "even.yaml", "polar", "joints.main")
+    assert "the last turn of coordinates.main.angle, t = 2 to 3 s" in words
+    assert {"0°", "90°", "180°", "270°"} <= set(words.split("\n")) and "360°" not in words.split("\n")
+    marks, centripetal = panel.spots(filled=False), 2 * 0.1 * (2 * np.pi) ** 2
+    assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
+    assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
+
+
+def test_of_one_that_does_not_the_whole_run(heun: Heun, folder: Path) -> None:
+    (folder / "faster.yaml").write_text(CRANK.replace("LAW", '"2*pi*t**2/3"'))
+    (panel,), words = drawn(heun, "faster.yaml", "polar", "foundation")
+    assert "the whole run, t = 0 to 3 s" in words
+    (curve,) = panel.lines("foundation.force")
+    rate, gain = 4 * np.pi, 4 * np.pi / 3
+    assert np.hypot(*curve.T).max() == pytest.approx(2 * 0.1 * np.hypot(rate**2, gain), abs=panel.pixel)
+
+
+def test_a_curve_is_broken_where_a_blow_strikes(heun: Heun) -> None:
+    (panel,), _ = drawn(heun, str(SPECS / "hammered_four_bar.yaml"), "polar", "foundation")
+    before, after = panel.lines("foundation.force")
+    assert np.hypot(*(after[0] - before[-1])) > 20.0
+
+
+REFUSED = [
+    ((ROTOR, "polar", "joints.left.drive"), "a polar diagram is of a vector"),
+    ((ROTOR, "polar", "coordinates.left.angle"), "a polar diagram is of a vector"),
+    ((ROTOR, "polar", "joints.left.force.y"), "a polar diagram is of a vector"),
+    ((ROTOR, "polar"), "of what is not said"),
+    ((ROTOR, "polar", "joints.wrong"), "is not a result"),
+    ((ROTOR, "polar", "joints.left", "--view", "20,30"), "--view 20,30"),
+    ((ROTOR, "polar", "joints.left", "--axes", "body"), "--axes body"),
+    ((str(SPECS / "door.yaml"), "polar", "foundation"), "there is one instant"),
+    ((str(SPECS / "double.yaml"), "polar", "joints.elbow"), "no plane holds it"),
+]
+
+
+@pytest.mark.parametrize(("words", "why"), REFUSED)
+def test_what_has_no_polar_diagram_is_told(heun: Heun, folder: Path, words: tuple[str, ...], why: str) -> None:
+    done = heun("plot", *words, "-o", "drawn.svg")
+    assert done.returncode in (2, 3) and why in done.stderr and "hint: " in done.stderr
+    assert done.stdout == "" and not (folder / "drawn.svg").exists()
+
+
+def test_what_stands_across_the_plane_is_said(heun: Heun) -> None:
+    double = str(SPECS / "double.yaml")
+    (panel,), words = drawn(heun, double, "polar", "joints.elbow", "--view", "x")
+    force = np.array(json.loads(heun("run", double, "--format", "json").stdout)["joints"]["elbow"]["force"])
+    assert far_from(force[:, 1:], panel.lines("joints.elbow.force")[0]) < panel.pixel
+    across = re.search(r"across the plane up to ([\d.]+) N", words)
+    assert across is not None and float(across[1]) == pytest.approx(np.abs(force[:, 0]).max(), rel=0.02)
+
+
+def test_it_is_the_same_every_time_and_in_letters(heun: Heun) -> None:
+    for name in ("one.svg", "two.svg"):
+        assert heun("plot", ROTOR, "polar", "joints.right", "-o", name).returncode == 0
+    assert Path("one.svg").read_bytes() == Path("two.svg").read_bytes()
+    lines = heun("plot", ROTOR, "polar", "joints.right", "--width", "60").stdout.splitlines()
+    assert max(map(len, lines)) <= 60 and any("127.959 N" in line for line in lines)
+    assert any("90°" in line for line in lines)
+
+
+def test_hostile_words_are_shown_and_do_nothing(heun: Heun, folder: Path) -> None:
+    title = '</text><script>alert(1)</script> & "it" \'\u202egnp.exe'
+    text = CRANK.replace("A crank that is turned", json.dumps(title)).replace("LAW", '"2*pi*t"')
+    (folder / "a<b>&.yaml").write_text(text)
+    done = heun("plot", "a<b>&.yaml", "polar", "joints.main", "-o", "drawn.svg")
+    assert done.returncode == 0
+    text = (folder / "drawn.svg").read_text()
+    assert "<script" not in text and "\u202e" not in text
+    assert any("<script>alert(1)</script>" in each for each in texts_of(text))

@@ -1,0 +1,147 @@
+"""What a drawing shows, read back from its SVG: panels by their frames, axes by the numbers written along them."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as tree
+from typing import NamedTuple
+
+import numpy as np
+
+from heuncli.results import Array
+
+SVG = "{http://www.w3.org/2000/svg}"
+BELOW, BESIDE, BASE = (
+    16.0,
+    7.0,
+    4.0,
+)  # pixels: from a frame to the numbers under it and to those at its left; their base
+
+
+class PlottedAxis(NamedTuple):
+    """Numbers along an axis: a value is `begin + step * pixel`."""
+
+    begin: float
+    step: float
+
+    def values(self, pixels: Array) -> Array:
+        """What stands at some pixels."""
+        return np.asarray(self.begin + self.step * pixels)
+
+
+class PlottedPanel(NamedTuple):
+    """A panel: its axes, and all that is drawn in its frame."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+    x: PlottedAxis
+    y: PlottedAxis
+    root: tree.Element
+
+    def lines(self, name: str) -> list[Array]:
+        """The polylines of a name, (n, 2) each, in the units of the axes."""
+        found = [e for e in self.root.iter(f"{SVG}polyline") if e.findtext(f"{SVG}title") == name]
+        return [self.in_units(points) for e in found if self.holds(points := points_of(e))]
+
+    def areas(self, name: str) -> list[Array]:
+        """The filled polygons of a name, (n, 2) each, in the units of the axes."""
+        found = [e for e in self.root.iter(f"{SVG}polygon") if e.findtext(f"{SVG}title") == name]
+        return [self.in_units(points) for e in found if self.holds(points := points_of(e))]
+
+    def spots(self, *, filled: bool) -> Array:
+        """The middles of round marks, (n, 2), in the units of the axes."""
+        circles = (e for e in self.root.iter(f"{SVG}circle") if (e.get("fill") != "#ffffff") == filled)
+        places = [(float(e.get("cx", "nan")), float(e.get("cy", "nan"))) for e in circles]
+        return self.in_units(np.array([p for p in places if self.holds(np.array([p]))]).reshape(-1, 2))
+
+    def in_units(self, points: Array) -> Array:
+        """Pixels (n, 2) in the units of the axes."""
+        return np.column_stack([self.x.values(points[:, 0]), self.y.values(points[:, 1])])
+
+    def holds(self, points: Array) -> bool:
+        """Whether points (n, 2) lie in the frame."""
+        low, high = points.min(axis=0), points.max(axis=0)
+        edge = 1.0
+        across = self.left - edge <= low[0] and high[0] <= self.right + edge
+        return bool(across and self.top - edge <= low[1] and high[1] <= self.bottom + edge)
+
+    @property
+    def pixel(self) -> float:
+        """The larger of the two units that a pixel is."""
+        return max(abs(self.x.step), abs(self.y.step))
+
+
+def points_of(element: tree.Element) -> Array:
+    """The points of a polyline or polygon, (n, 2) [pixels]."""
+    return np.array([[float(x) for x in pair.split(",")] for pair in element.get("points", "").split()])
+
+
+def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
+    """The panels of a drawing, from above; equal: of both axes alike, so that one number tells the one across."""
+    root = tree.fromstring(svg.encode())
+    frames = [points for e in root.iter(f"{SVG}polyline") if is_frame(points := points_of(e))]
+    found = []
+    for points in frames:
+        (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
+        under = numbers(root, "middle", lambda x, y, at=bottom: (x, abs(y - at - BELOW) < 0.1))
+        beside = numbers(root, "end", lambda x, y, at=left: (y - BASE, abs(x - at + BESIDE) < 0.1))
+        upward = {place: value for place, value in beside.items() if top - 1.0 <= place <= bottom + 1.0}
+        y = axis(upward)
+        x = axis(under) if not equal or len(under) > 1 else through(under, -y.step)
+        found.append(PlottedPanel(left, top, right, bottom, x, y, root))
+    named = next((panel.x for panel in reversed(found) if np.isfinite(panel.x.step)), None)
+    return [panel._replace(x=named) if named and not np.isfinite(panel.x.step) else panel for panel in found]
+
+
+def is_frame(points: Array) -> bool:
+    """Whether a line is the frame of a panel: a closed rectangle."""
+    if len(points) != 5 or not np.array_equal(points[0], points[-1]):
+        return False
+    steps = np.abs(np.diff(points, axis=0))
+    return bool((steps.min(axis=1) == 0.0).all() and (steps.max(axis=1) > 10.0).all())
+
+
+def numbers(root: tree.Element, anchor: str, place_of: object) -> dict[float, float]:
+    """The numbers written along an axis by their places [pixels]."""
+    found = {}
+    for e in root.iter(f"{SVG}text"):
+        if e.get("text-anchor") != anchor or e.get("transform"):
+            continue
+        place, own = place_of(float(e.get("x", "nan")), float(e.get("y", "nan")))  # type: ignore[operator]
+        try:
+            if own:
+                found[place] = float(e.text or "")
+        except ValueError:
+            continue
+    return found
+
+
+def axis(found: dict[float, float]) -> PlottedAxis:
+    """The axis through numbers at their places; without numbers where there are fewer than two."""
+    if len(found) < 2:
+        return PlottedAxis(float("nan"), float("nan"))
+    places, values = np.array(list(found)), np.array(list(found.values()))
+    step, begin = np.polyfit(places, values, 1)
+    return PlottedAxis(float(begin), float(step))
+
+
+def through(found: dict[float, float], step: float) -> PlottedAxis:
+    """The axis of a known step through one number at its place."""
+    ((place, value),) = found.items()
+    return PlottedAxis(value - step * place, step)
+
+
+def texts_of(svg: str) -> list[str]:
+    """All that is written in a drawing."""
+    return [e.text or "" for e in tree.fromstring(svg.encode()).iter(f"{SVG}text")]
+
+
+def far_from(points: Array, line: Array) -> float:
+    """How far the farthest of points (n, 2) is from a polyline (m, 2)."""
+    a, b = line[:-1], line[1:]
+    along = b - a
+    length = np.maximum((along**2).sum(axis=1), 1e-300)
+    share = np.clip(((points[:, None] - a) * along).sum(axis=2) / length, 0.0, 1.0)
+    near = a + share[:, :, None] * along
+    return float(np.sqrt(((points[:, None] - near) ** 2).sum(axis=2)).min(axis=1).max())

@@ -1,0 +1,160 @@
+"""What a page holds of every spec: the numbers of the JSON at the same instants, and places that are drawn."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.commands.show.command import REPORTS
+from heuncli.page.moving_page import moving_page
+from heuncli.page.number_rows import ZEROS
+from heuncli.report.export import to_json
+from heuncli.report.table_units import Units
+from heuncli.results import Array
+from heuncli.results_schema import leading_key
+from heuncli.scenery.machine import machine_of
+from heuncli.scenery.poses import poses_of
+from heuncli.spec.load import load
+from heuncli.study.ask.study import Study
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from tests.shared.folders import SPECS
+from tests.shared.moving_pages import data_of, places, unpacked
+
+pytestmark = pytest.mark.heavy
+FILES = sorted(SPECS.glob("*.yaml"))
+ANY = pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+PIXEL = 1e-5  # of a scene's reach: far below a pixel
+
+
+@cache
+def shown(file: Path) -> tuple[Study, str]:
+    """A spec solved, and its page."""
+    study = solve(load(file, checking=False), Options(wanted=REPORTS))
+    return study, moving_page(study, Units())
+
+
+def told(document: Any, path: str) -> Any:
+    """What stands in the JSON at a path."""
+    words = path.split(".")
+    while words:
+        key, words = leading_key(document, words)
+        document = document[key]
+    return document
+
+
+def rows(data: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    """All rows over the frames."""
+    return (row for block in data["blocks"] for group in block["groups"] for row in group["rows"])
+
+
+def numbers(values: Any) -> Array:
+    """Of a list of the JSON, null as nan."""
+    return np.array(values, dtype=np.float64)
+
+
+@ANY
+def test_the_numbers_are_those_of_the_json(file: Path) -> None:
+    study, page = shown(file)
+    data, document = data_of(page), json.loads(to_json(study.results))
+    count = data["count"]
+    times = unpacked(data["time"], count)
+    assert np.all(np.diff(times) > 0.0) and len(times) == count
+    frames = np.flatnonzero(np.isin(times, study.results.time))
+    asked = np.searchsorted(study.results.time, times[frames])
+    assert len(frames) == min(len(study.results.time), count)
+    seen = 0
+    for row in rows(data):
+        found = np.stack([unpacked(packed, count) for _, packed in row["parts"]], axis=1)
+        wanted = numbers(told(document, row["path"])).reshape(len(study.results.time), -1)
+        np.testing.assert_array_equal(found[frames], wanted[asked], err_msg=row["path"])
+        seen += found.size
+    for section in data["sections"]:
+        for load_ in section["loads"]:
+            found = unpacked(load_["values"], count * len(section["cuts"])).reshape(count, -1)
+            wanted = numbers(told(document, load_["path"])).reshape(len(study.results.time), -1)
+            np.testing.assert_array_equal(found[frames], wanted[asked], err_msg=load_["path"])
+            seen += found.size
+    for block in (block for blow in data["blows"] for block in blow["blocks"]):
+        for row in (row for group in block["groups"] for row in group["rows"]):
+            found = np.array([unpacked(packed, 1)[0] for _, packed in row["parts"]])
+            np.testing.assert_array_equal(found, _of_blow(document, row["path"]), err_msg=row["path"])
+            seen += found.size
+    assert seen > 0
+
+
+def _of_blow(document: Any, path: str) -> Array:
+    """The numbers of a blow in the JSON, at a path."""
+    _, number, rest = path.split(".", 2)
+    return numbers(told(document["impulses"][int(number)], rest)).reshape(-1)
+
+
+@ANY
+def test_what_is_0_throughout_is_named(file: Path) -> None:
+    """Nothing of joints, foundation and sections is missing without a word."""
+    study, page = shown(file)
+    data = data_of(page)
+    there = {row["path"] for row in rows(data)}
+    said = [name for block in data["blocks"] for told in block["told"] for name in told[len(ZEROS) :].split(", ")]
+    for name, joint in study.results.joints.items():
+        for quantity in ("force", "moment"):
+            if quantity in joint:
+                assert f"joints.{name}.{quantity}" in there or f"{name} {quantity}" in said
+
+
+@ANY
+def test_the_poses_are_those_of_the_machine(file: Path) -> None:
+    study, page = shown(file)
+    data = data_of(page)
+    scene, count = data["scene"], data["count"]
+    poses, machine = poses_of(study, unpacked(data["time"], count)), machine_of(study.spec)
+    half, center = np.array(scene["half"]), np.array(scene["center"])
+    for body, look in zip(scene["bodies"], machine.bodies, strict=True):
+        at = places(body["places"]).reshape(count, 3)
+        np.testing.assert_allclose(at, poses.places[look.name], rtol=1e-6, atol=PIXEL * scene["radius"])
+        w, x, y, z = places(body["attitudes"]).reshape(count, 4).T
+        first = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
+        np.testing.assert_allclose(first, poses.attitudes[look.name][:, :, 0], atol=1e-5)
+        clouds = [surface.corners for surface in look.surfaces] + list(look.lines)
+        drawn = [places(s["corners"]) if "corners" in s else None for s in body["surfaces"]]
+        drawn += [places(x) for x in body["lines"]]
+        for wanted, found in zip(clouds, drawn, strict=True):
+            if found is not None:
+                np.testing.assert_allclose(found.reshape(-1, 3), wanted, rtol=1e-6, atol=PIXEL * scene["radius"])
+            stand = poses.at(look.name, wanted, 0)
+            assert np.all(np.abs(stand - center) <= half * (1 + 1e-9) + 1e-9 * scene["radius"])
+
+
+@ANY
+def test_cuts_stand_where_the_results_say(file: Path) -> None:
+    study, page = shown(file)
+    data = data_of(page)
+    machine, poses = machine_of(study.spec), poses_of(study, study.results.time)
+    for section in data["sections"]:
+        block, name = study.results.sections[section["name"]], machine.bodies[section["body"]].name
+        if study.spec.sections[section["name"]].reduce_to == "at":
+            found = poses.at(name, np.array(section["cuts"]), 0)
+            np.testing.assert_allclose(found, block["point"][0].reshape(-1, 3), atol=1e-9 * data["scene"]["radius"])
+        for axis, wanted in (("normal", block["normal"][0]), ("first", block["first_axis"][0])):
+            turned = poses.attitudes[name][0] @ np.array(section[axis])
+            np.testing.assert_allclose(turned, wanted, atol=1e-12)
+        e = np.array([section["first"], section["second"], section["normal"]])
+        np.testing.assert_allclose(e @ e.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(e) > 0.0
+
+
+@pytest.mark.parametrize("name", ["double", "crane", "percussion", "table"])
+def test_the_bytes_repeat(name: str) -> None:
+    file = SPECS / f"{name}.yaml"
+    again = moving_page(solve(load(file, checking=False), Options(wanted=REPORTS)), Units())
+    assert again == shown(file)[1]
+
+
+def test_the_page_of_two_bars_is_small() -> None:
+    assert len(shown(SPECS / "double.yaml")[1].encode()) <= 300_000

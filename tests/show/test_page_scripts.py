@@ -1,0 +1,137 @@
+"""The scripts of a page without a page: digits as tables have them, views that are rigid, frames by their instants.
+
+Run by Node, where there is one; a browser runs all of them in tests/browser.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.page.inlined import in_order, script
+from heuncli.report.digits import Style
+
+NODE = shutil.which("node")
+pytestmark = [
+    pytest.mark.heavy,
+    pytest.mark.skipif(NODE is None, reason="no Node on this machine: scripts of pages are not run without a browser"),
+]
+SCENE = {"center": [1.0, 2.0, 3.0], "half": [1.0, 0.5, 2.0], "radius": 2.5, "joints": [], "ground": []}
+
+
+def run(code: str, given: Any) -> Any:
+    """What a piece of script returns of what it is given, with all scripts but the last before it."""
+    text = script()
+    begun = text[: text.index(f"const {in_order()[-1]}_js")]
+    whole = f"{begun}\nconsole.log(JSON.stringify(((given) => {{ {code} }})({json.dumps(given)})));\n}})();\n"
+    done = subprocess.run([str(NODE), "-"], input=whole, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout)
+
+
+def test_numbers_have_the_digits_of_tables() -> None:
+    random = np.random.default_rng(5)
+    cases: list[tuple[float, Style]] = []
+    for _ in range(2000):
+        scale = 10.0 ** random.uniform(-9, 12)
+        how = Style(
+            5 - math.floor(math.log10(scale)) - int(random.integers(4)), bool(random.integers(2)),
+            scale * 10.0 ** random.uniform(-9, -3),
+            bool(random.uniform() < 0.9),
+        )  # fmt: skip
+        cases.append((float(scale * random.normal()), how))
+    cases += [(0.0, Style(3)), (-0.00049, Style(3)), (1e-300, Style(5, True))]
+    found = run(
+        "return given.map(([value, style]) => digits_js.written(value, style));", [[v, list(s)] for v, s in cases]
+    )
+    wanted = [how.write(value) for value, how in cases]
+    # an exponent is written as each of the two languages does: 1e+07, 1e+7
+    plain = [text.replace("−", "-") if "e" not in text else float(text.replace("−", "-")) for text in found]
+    assert plain == [text if "e" not in text else float(text) for text in wanted]
+
+
+def test_what_is_open_is_told() -> None:
+    code = "return [NaN, -Infinity].map((value) => digits_js.written(value, [3, false, 0, true]));"
+    assert run(code, None) == ["open", "unbounded"]
+
+
+@pytest.mark.parametrize("gravity", [[0, 0, -9.81], [0, -9.81, 0], [9.81, 0, 0], [0, 0, 0]])
+@pytest.mark.parametrize("normal", [None, [0, 0, 1], [1, 0, 0], [0, -1, 0]])
+def test_a_view_is_rigid_and_up_is_up(gravity: list[float], normal: list[float] | None) -> None:
+    code = """
+      const view = new view_js.View(given);
+      view.fill(800, 600);
+      const found = [[view.right, view.above, view.toward]];
+      for (const axis of [[1, 0, 0], [0, 1, 0], [0, 0, 1]]) {
+        view.along(axis);
+        found.push([view.right, view.above, view.toward]);
+      }
+      view.turn(0.7, -0.4);
+      found.push([view.right, view.above, view.toward]);
+      return [found, view.up];
+    """
+    found, up = run(code, SCENE | {"gravity": gravity, "normal": normal})
+    for axes in np.array(found):
+        np.testing.assert_allclose(axes @ axes.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(axes) == pytest.approx(1.0)
+        assert axes[1] @ np.array(up) >= -1e-12
+    if any(gravity):
+        np.testing.assert_allclose(up, -np.array(gravity) / 9.81)
+    for k, axes in enumerate(np.array(found[1:4])):  # along an axis: what goes to the right is a positive axis
+        assert abs(axes[2][k]) == pytest.approx(1.0) and axes[0].max() == pytest.approx(1.0)
+
+
+def test_all_of_a_machine_is_on_the_screen() -> None:
+    code = """
+      const view = new view_js.View(given);
+      const found = [];
+      for (const [w, h] of [[800, 600], [390, 300], [300, 900]]) {
+        view.fill(w, h);
+        for (let k = 0; k < 8; k += 1) {
+          const corner = [0, 1, 2].map((i) => given.center[i] + (k & (1 << i) ? 1 : -1) * given.half[i]);
+          const [x, y] = view.project(corner);
+          found.push([x / w, y / h]);
+        }
+      }
+      return found;
+    """
+    found = np.array(run(code, SCENE | {"gravity": [0, 0, -9.81], "normal": None}))
+    assert found.min() > 0.0 and found.max() < 1.0
+    assert (found.max(axis=0) - found.min(axis=0)).max() > 0.5
+
+
+def test_frames_are_found_by_their_instants() -> None:
+    code = """
+      globalThis.matchMedia = () => ({ matches: false });
+      const player = new player_js.Player(given, () => {});
+      const before = [-1, 0, 0.1, 0.25, 0.3, 9].map((t) => player.frameAt(t));
+      return [before, [0.04, 0.06, 0.19, 9].map((t) => player.nearest(t))];
+    """
+    assert run(code, [0.0, 0.1, 0.3, 0.4]) == [[0, 0, 1, 1, 2, 3], [0, 1, 1, 3]]
+
+
+def test_a_run_is_proposed_at_a_speed_at_which_it_is_seen() -> None:
+    found = run("return given.map((duration) => player_js.speedFor(duration));", [0.05, 0.08, 2.0, 36.0, 5000.0, 1e-9])
+    assert found == [0.01, 0.01, 1, 1, 100, 0.0001]
+
+
+def test_a_pose_between_two_frames_is_one_of_a_rigid_body() -> None:
+    half = math.sin(0.1), math.cos(0.1)
+    code = """
+      const scene = { bodies: given.map((attitudes) => ({ places: [0, 0, 0, 1, 2, 3], attitudes })) };
+      return [0, 0.5, 1].map((share) => poses_js.posesAt(scene, 0, share));
+    """
+    near = [1.0, 0.0, 0.0, 0.0, half[1], 0.0, 0.0, half[0]]
+    far = [1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0]
+    for share, (smooth, torn) in zip((0.0, 0.5, 1.0), run(code, [near, far]), strict=True):
+        R = np.array(smooth["R"]).reshape(3, 3)
+        np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-12)
+        assert math.atan2(R[1, 0], R[0, 0]) == pytest.approx(0.2 * share)
+        np.testing.assert_allclose(smooth["place"], share * np.array([1.0, 2.0, 3.0]))
+        np.testing.assert_array_equal(torn["place"], [0.0, 0.0, 0.0])  # it turns too far to be drawn between

@@ -1,0 +1,113 @@
+"""`heun show`: what it writes where, and what it refuses in one line, before anything is solved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.commands.show.command import MOST_BODIES
+from heuncli.page.frames import MOST
+from tests.shared.command import TURNED, Heun
+from tests.shared.folders import SPECS
+from tests.shared.moving_pages import data_of, unpacked
+
+
+def test_the_page_goes_where_it_is_told(heun: Heun, folder: Path) -> None:
+    done = heun("show", "swinging.yaml", "-o", "out.html")
+    assert done == (0, "", "")
+    shown = heun("show", "swinging.yaml", "-o", "-")
+    assert shown.stdout == (folder / "out.html").read_text(encoding="utf-8") and shown.returncode == 0
+    assert shown.stdout.startswith("<!DOCTYPE html>\n<html lang=")
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "said"),
+    [
+        (("swinging.yaml",), 2, "where the page goes is not said"),
+        (("swinging.yaml", "-o", "x.bmp"), 2, "no page is known by that ending"),
+        (("swinging.yaml", "-o", "x"), 2, "no page is known by that ending"),
+        (("swinging.yaml", "-o", "nowhere/x.html"), 5, "nowhere"),
+        (("swinging.yaml", "-o", "x.html", "--frames", "1"), 2, "expected 2 to 5000"),
+        (("swinging.yaml", "-o", "x.html", "--frames", "5001"), 2, "expected 2 to 5000"),
+        (("swinging.yaml", "-o", "x.html", "--units", "kg"), 2, "--units kg"),
+        (("swinging.yaml", "-o", "x.html", "--case", "none"), 2, "none"),
+        (("nosuch.yaml", "-o", "x.html"), 2, "nosuch.yaml"),
+        (("scene.html", "-o", "scene.html"), 2, "the spec itself"),
+    ],
+)
+def test_what_is_refused(heun: Heun, folder: Path, words: tuple[str, ...], code: int, said: str) -> None:
+    (folder / "scene.html").write_text(TURNED)
+    before = sorted(folder.iterdir())
+    done = heun("show", *words)
+    assert done.returncode == code and done.stdout == ""
+    lines = done.stderr.splitlines()
+    assert said in lines[0] and len([line for line in lines if not line.startswith("  hint: ")]) == 1
+    assert sorted(folder.iterdir()) == before
+
+
+def test_a_scene_of_too_many_bodies_is_refused_before_it_is_solved(
+    heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def never(*_: object) -> None:
+        raise AssertionError("solved")
+
+    monkeypatch.setattr("heuncli.commands.show.command.solve", never)
+    bodies = "".join(f"  b{k}: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(MOST_BODIES + 1))
+    (folder / "many.yaml").write_text(f"heun: 1\nbodies:\n{bodies}")
+    done = heun("show", "many.yaml", "-o", "x.html")
+    assert done.returncode == 4 and f"at most {MOST_BODIES}" in done.stderr and not (folder / "x.html").exists()
+
+
+def written(heun: Heun, folder: Path, *words: str) -> dict[str, object]:
+    """The data of the page that is written."""
+    done = heun("show", *words, "-o", "x.html")
+    assert done.returncode == 0, done.stderr
+    return data_of((folder / "x.html").read_text(encoding="utf-8"))
+
+
+def test_a_long_run_is_thinned_and_that_is_said(heun: Heun, folder: Path) -> None:
+    (folder / "fine.yaml").write_text(TURNED + "analysis: {duration: 1, samples: 3001}\n")
+    found = written(heun, folder, "fine.yaml")
+    assert found["count"] == MOST and f"3001 instants; {MOST} of them" in str(found["told"])
+    found = written(heun, folder, "fine.yaml", "--frames", "10")
+    times = unpacked(found["time"], 10)  # type: ignore[arg-type]
+    assert found["count"] == 10 and times[0] == 0.0 and times[-1] == 1.0
+
+
+def test_between_few_instants_there_are_more_frames(heun: Heun, folder: Path) -> None:
+    found = written(heun, folder, "swinging.yaml")
+    count = int(str(found["count"]))
+    times = unpacked(found["time"], count)  # type: ignore[arg-type]
+    assert 100 < count <= MOST
+    assert all(np.abs(times - t).min() < 1e-12 for t in np.linspace(0.0, 1.0, 11))
+
+
+def test_of_one_instant_there_is_one_frame(heun: Heun, folder: Path) -> None:
+    assert written(heun, folder, "hanging.yaml")["count"] == 1
+
+
+def test_nothing_is_shown_beyond_the_horizon(heun: Heun, folder: Path) -> None:
+    found = written(heun, folder, str(SPECS / "double.yaml"), "--set", "analysis.duration=80")
+    horizon = found["horizon"]
+    times = unpacked(found["time"], int(str(found["count"])))  # type: ignore[arg-type]
+    assert isinstance(horizon, float) and horizon < 60.0
+    assert 0.9 * horizon < times[-1] < horizon and "nothing beyond is claimed" in str(found["told"])
+
+
+def test_units_are_those_asked_for_and_numbers_stay_si(heun: Heun, folder: Path) -> None:
+    plain, asked = (written(heun, folder, "swinging.yaml", *words) for words in ((), ("--units", "kN,mm")))
+
+    def force(data: dict[str, object]) -> dict[str, object]:
+        rows = [row for b in data["blocks"] for g in b["groups"] for row in g["rows"]]  # type: ignore[attr-defined]
+        return next(row for row in rows if row["path"] == "joints.pivot.force")
+
+    assert force(plain)["unit"] == "N" and force(asked)["unit"] == "kN" and force(asked)["size"] == 1e-3
+    assert force(plain)["parts"] == force(asked)["parts"]
+    assert asked["length"] == ["mm", 1e3]
+
+
+def test_what_is_set_is_solved(heun: Heun, folder: Path) -> None:
+    one, two = (written(heun, folder, "hanging.yaml", "--set", f"m={m}")["blocks"] for m in (1, 2))
+    assert one != two and "9.81" in str(one) and "19.62" in str(two)
