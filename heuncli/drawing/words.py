@@ -22,9 +22,8 @@ NEAR = 2.0  # from a mark to its words
 LEAST_WIDTH = 1.0  # of an unnamed line that is no hatch
 
 
-def words(items: Sequence[Item], box: Box, drawn: Sequence[Shape], room: WordBox) -> tuple[list[Shape], list[str]]:
-    """The words of spots and vertical marks, and what is told of those that find no room; drawn: what stands there."""
-    field = _field(drawn, room)
+def words(items: Sequence[Item], box: Box, field: Field) -> tuple[list[Shape], list[str]]:
+    """The words of spots and vertical marks, and what is told of those that find no room in the field."""
     texts: list[Shape] = []
     told: list[str] = []
     for item in in_turn(items):
@@ -47,8 +46,8 @@ def wide(text: str, size: float) -> float:
     return WIDE * size * columns_of(text)
 
 
-def _field(drawn: Sequence[Shape], room: WordBox) -> Field:
-    """The room of a panel with its curves, marks and words."""
+def field_of(drawn: Sequence[Shape], room: WordBox) -> Field:
+    """The room of a panel with its curves, marks and words: what stands there."""
     field = Field(room, (FINE, FINE))
     for shape in drawn:
         if isinstance(shape, Line):
