@@ -19,7 +19,8 @@ def drawing_parts(of: Reported) -> list[Part]:
     """The machine at its first instant, of the first case."""
     run = of.runs[0]
     case = f", load case {run.name}" if run.name else ""
-    return [Drawing(scene(Pictured("", run.study), of.units), f"The machine at the start{case}")]
+    figure = scene(Pictured("", run.study), of.units)._replace(title="")
+    return [Drawing(figure, f"The machine at the start{case}: what its joints exert, as arrows to scale")]
 
 
 def model_parts(of: Reported) -> list[Part]:

@@ -32,6 +32,7 @@ from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep, looks_between
 from heuncli.telling.outcomes import Outcome, outcome_of
 
+DRAWN = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 BLOWS_ALONE = frozenset({"impulses"})
 EMPTY: frozenset[str] = frozenset()
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
@@ -93,7 +94,7 @@ def _solved(name: str, spec: Spec, options: Options, *, told: bool) -> Study:
     """A case with all that is told of it, and all that is expected. Raises what `solve` does, with the case's name."""
     asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else Selection(EMPTY)
     if told:
-        asked = asked.with_all(Selection(wanted_of(spec)))
+        asked = asked.with_all(Selection(wanted_of(spec) | DRAWN))
     own = replace(options, wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(),
                   room=Room(*memory.room("table")))  # fmt: skip
     try:
