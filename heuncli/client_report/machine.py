@@ -20,7 +20,7 @@ def drawing_parts(of: Reported) -> list[Part]:
     run = of.runs[0]
     case = f", load case {run.name}" if run.name else ""
     figure = scene(Pictured("", run.study), of.units)._replace(title="")
-    return [Drawing(figure, f"The machine at the start{case}: what its joints exert, as arrows to scale")]
+    return [Drawing(figure, f"The machine at the start{case}")]
 
 
 def model_parts(of: Reported) -> list[Part]:
