@@ -32,6 +32,10 @@ QUIET = Option(("--quiet", "-q"), "No warnings on standard error.")
 TIME_LIMIT = Option(("--time-limit",), "Give up after that long.", "SECONDS")
 TIME_LIMIT_EACH = Option(("--time-limit",), "Give up on a spec after that long; the others go on.", "SECONDS")
 UNITS = Option(("--units",), "Units of tables, such as kN,mm,deg,rpm; all other forms stay SI.", "UNIT,...")
+VIEW = Option(
+    ("--view",), "From where a scene is seen: along x, y, z, or azimuth, elevation [deg].", "x|y|z|A,E"
+)  # fmt: skip
+WIDTH = Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")
 METHOD = Option(("--method",), "The method of integration; `heun methods` lists them.", "NAME")
 STEP = Option(("--step",), "The step of a method of fixed step.", "SECONDS")
 TOLERANCE = Option(("--tolerance",), "Error of the motion, relative to the scene.", "NUMBER")

@@ -23,7 +23,7 @@ from heuncli.client_report.parts import ReportCell, ReportTable, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
-from heuncli.report.extremes_tables import MANY, PARTLY_OPEN_NOTE
+from heuncli.report.extremes_tables import MANY, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.envelopes import Bound
 
@@ -52,6 +52,7 @@ def cases_table(
         else:
             rows += ["  ".join(filter(None, (group.name, group.note))), *lines]
     below = [*_notes(of, rows), *notes]
+    below += [NOT_SEARCHED] if not all(run.searched for run in of.runs) else []
     below += [FEW_CASES.format(len(of.runs))] if len(shown) < len(of.runs) else []
     below += [f"0 throughout: {some(nothing)}"] if nothing else []
     return ReportTable(caption, _columns(of, along=along) if rows else [], rows, below)

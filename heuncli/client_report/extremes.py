@@ -16,6 +16,7 @@ from heuncli.telling.envelopes import Bound, envelope
 from heuncli.telling.kept import BEYOND, KeptNumber
 
 LEAST, GREATEST = "least", "greatest"
+FINEST = 9  # decimals of places [m]: what is below is nothing
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
 
 
@@ -129,7 +130,7 @@ def place_text(place: str | None, units: Units, *, named: bool = True) -> str:
         return ""
     distance, _, side = place.partition(" m")
     unit, size = units.of("m")
-    return f"{float(distance) * size:.5g}{f' {unit}' * named}{side}"
+    return f"{round(float(distance), FINEST) * size:.5g}{f' {unit}' * named}{side}"
 
 
 def instant_text(at: float | None, run: ReportedRun) -> str:

@@ -41,12 +41,14 @@ class Strokes(NamedTuple):
 
 
 class Polygon(NamedTuple):
-    """A closed line through corners (n, 2), filled lightly or not at all."""
+    """A closed line through corners (n, 2), filled lightly or not at all; solid: what lies beneath hardly shows."""
 
     name: str
     corners: Array
     pen: int | None = None
     filled: bool = False
+    solid: bool = False
+    width: float = 1.0
 
 
 class Arrow(NamedTuple):
@@ -63,7 +65,7 @@ class Arrow(NamedTuple):
 class Spot(NamedTuple):
     """A marked place with its words; shape: one of drawing/picture.py.
 
-    note: what is told of it below the panels where the words find no room; the words where it is empty.
+    note: what is told of it under the panels where the words find no room; the words where it is empty.
     """
 
     x: float
@@ -82,6 +84,46 @@ class Words(NamedTuple):
     y: float
     text: str
     pen: int | None = None
+
+
+class Symbol(NamedTuple):
+    """A symbol of drawing/symbols.py about a place, as large on paper whatever the scale.
+
+    along: where its x points in the panel, of any length; name: what a reader is told of it.
+    """
+
+    x: float
+    y: float
+    symbol: str
+    along: tuple[float, float] = (1.0, 0.0)
+    pen: int | None = None
+    name: str = ""
+
+
+class Link(NamedTuple):
+    """What joins two places: a kind of drawing/symbols.py, as wide on paper whatever the scale."""
+
+    x: float
+    y: float
+    to_x: float
+    to_y: float
+    kind: str
+    pen: int | None = None
+    name: str = ""
+
+
+class Label(NamedTuple):
+    """Words that are to stand beside a place where there is room; letter: what stands there in letters, and is told.
+
+    spare: nobody misses it where there is none.
+    """
+
+    x: float
+    y: float
+    text: str
+    letter: str = ""
+    pen: int | None = None
+    spare: bool = False
 
 
 class Upright(NamedTuple):
@@ -125,7 +167,7 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Upright | Blank | Bars | Cells
+Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Symbol | Link | Label | Upright | Blank | Bars | Cells
 
 
 class Scaling(NamedTuple):
@@ -149,7 +191,8 @@ class Scaling(NamedTuple):
 class Panel(NamedTuple):
     """Axes with what stands in them, the first beneath the others; equal: one unit is as long on both axes.
 
-    height [pixels]; of equal axes the most. bare: without axes, as a view of a machine.
+    height [pixels]; of equal axes the most. bare: without axes. layered: what stands behind covers what stands before
+    it, else lines lie on what is filled.
     """
 
     x: Scaling
@@ -159,6 +202,7 @@ class Panel(NamedTuple):
     equal: bool = False
     bare: bool = False
     title: str = ""
+    layered: bool = False
 
 
 class Figure(NamedTuple):

@@ -21,17 +21,21 @@ from heuncli.drawing.figure import (
     Cells,
     Figure,
     Item,
+    Label,
+    Link,
     Panel,
     Polygon,
     Scaling,
     Spot,
     Strokes,
+    Symbol,
     Trace,
     Upright,
     Words,
 )
 from heuncli.drawing.pens import pen
-from heuncli.drawing.room import Field, WordBox, columns_of, left_out
+from heuncli.drawing.room import WordBox, WordField, columns_of, left_out
+from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
 from heuncli.drawing.words import in_turn
 from heuncli.foreign_text import shown
@@ -44,6 +48,7 @@ DOTS = ((0x01, 0x08), (0x02, 0x10), (0x04, 0x20), (0x40, 0x80))  # by row and co
 ACROSS, DOWN = 2, 4  # dots of a cell
 ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
+DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
 SHADES = "·░▒▓█"  # what is not known is blank
@@ -86,7 +91,7 @@ class Canvas:
         self.dots = np.zeros((rows, columns), dtype=np.int64)
         self.pens = np.full((rows, columns), NOBODY)
         self.words: dict[tuple[int, int], tuple[str, int]] = {}
-        self.room = Field(WordBox(0.0, 0.0, columns, rows), (1.0, 1.0))
+        self.room = WordField(WordBox(0.0, 0.0, columns, rows), (1.0, 1.0))
 
     def x(self, value: float) -> float:
         """The dot of a place along the axis across, from the left."""
@@ -127,25 +132,38 @@ class Canvas:
 
     def beside(self, text: str, column: int, row: int, number: int) -> bool:
         """Words beside a cell, where there is room for them; whether there is."""
-        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0)
+        mark = WordBox(column, row, column + 1, row + 1)
+        found = self.room.beside(mark, columns_of(text) + 2, 1.0)  # with a blank at both sides
         if found is not None:
-            self._put(text, found, number)
+            self._put(text, int(found.left) + 1, int(found.top), number)
+        return found is not None
+
+    def at(self, text: str, column: int, row: int, number: int) -> bool:
+        """Words at a cell or touching it, where there are no others; whether there is room."""
+        wide = columns_of(text)
+        found = self.room.best(
+            (abs(down) + 0.1 * k, WordBox(column + right, row + down, column + right + wide, row + down + 1))
+            for k, (right, down) in enumerate((a, b) for b in (0, -1, 1) for a in (1, -wide, 0, 2, -wide - 1))
+            if down or not -wide < right < 1
+        )
+        if found is not None:
+            self._put(text, int(found.left), int(found.top), number)
         return found is not None
 
     def along(self, text: str, column: int) -> bool:
         """Words in one of the upper rows, at the right or left of a column; whether there is room."""
         wide = columns_of(text)
         found = self.room.best(
-            (2.0 * row, WordBox(left, row, left + wide + 1, row + 1))  # and a blank behind it
+            (2.0 * row, WordBox(left, row, left + wide + 2, row + 1))
             for row in range(min(UPPER, self.rows))
-            for left in (column + 1, column - wide - 1)
+            for left in (column, column - wide - 2)
         )
         if found is not None:
-            self._put(text, found, NOBODY)
+            self._put(text, int(found.left) + 1, int(found.top), NOBODY)
         return found is not None
 
-    def _put(self, text: str, box: WordBox, number: int) -> None:
-        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, int(box.left), int(box.top))}
+    def _put(self, text: str, column: int, row: int, number: int) -> None:
+        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, column, row)}
 
     def lines(self) -> list[str]:
         """The rows as text."""
@@ -238,13 +256,15 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     for item in panel.items:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
-    told = _words(panel.items, canvas)
+    told = _spoken(panel.items, canvas)
+    key, unnamed = _labels([item for item in panel.items if isinstance(item, Label) and item.letter], canvas)
+    told += unnamed
     if look.letters and look.braille:
         _named(panel.items, canvas)
     heads = wrapped(shown(" ".join(part for part in (panel.title, _upward(panel)) if part)), look.width, 0)
     lines = [*(head for head in heads if head)]
     if panel.bare:
-        return lines + canvas.lines(), told
+        return lines + canvas.lines() + key, told
     above = {round(canvas.x(i.x)) // canvas.per_x: i.text for i in panel.items if isinstance(i, Upright) and i.above}
     lines += [_placed(above, canvas)] if above else []
     marks = {round(canvas.y(v)) // canvas.per_y: text for v, text in ticks(panel.y, max(2, rows // 3))}
@@ -254,10 +274,10 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
             if look.braille
             else f"{shown(marks.get(row, ''))[:LABEL]:>{LABEL}} |{text}"
         )
-    return lines + _below(panel, canvas), told
+    return lines + _below(panel, canvas) + key, told
 
 
-def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
+def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
     """The words of spots and vertical marks where they find room; what is told of the others."""
     told: list[str] = []
     for item in in_turn(items):
@@ -266,10 +286,24 @@ def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
             has_room = canvas.along(shown(item.text), column)
         else:
             row = round(canvas.y(item.y)) // canvas.per_y
-            has_room = canvas.beside(shown(item.text), column, row, NOBODY if item.pen is None else item.pen)
+            number = NOBODY if item.pen is None else item.pen
+            has_room = canvas.beside(shown(item.text), column, row, number)
         if not has_room:
             told.append(item.note or item.text)
     return told
+
+
+def _labels(items: Sequence[Label], canvas: Canvas) -> tuple[list[str], list[str]]:
+    """The letters of labels, and what they stand for; what is told of those that found no room."""
+    known: dict[str, None] = {}
+    told: list[str] = []
+    for item in items:
+        column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
+        if canvas.at(shown(item.letter), column, row, NOBODY if item.pen is None else item.pen):
+            known |= {f"{item.letter} {item.text}": None} if item.letter != item.text else {}
+        elif not item.spare:
+            told.append(item.text)
+    return wrapped(shown(", ".join(known)), canvas.look.width, 2) if known else [], told
 
 
 def _named(items: Sequence[Item], canvas: Canvas) -> None:
@@ -330,8 +364,9 @@ def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
     """The dots of a line through points."""
     points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    if len(points) == 1 and math.isfinite(sum(points[0])):
-        canvas.dot(*points[0], number)
+    for x0, y0 in points if len(points) == 1 or not np.isfinite(y).all() else ():  # some may stand alone
+        if math.isfinite(x0 + y0):
+            canvas.dot(x0, y0, number)
     for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
             canvas.line(x0, y0, x1, y1, number, every)
@@ -372,7 +407,45 @@ def _spot(item: Spot, canvas: Canvas) -> None:
 
 def _word(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    canvas.write(shown(item.text), column - len(shown(item.text)) // 2, row)
+    canvas.write(shown(item.text), column - columns_of(shown(item.text)) // 2, row)
+
+
+def _symbol(item: Symbol, canvas: Canvas) -> None:
+    x, y = canvas.x(item.x), canvas.y(item.y)
+    shown_as = SYMBOLS[item.symbol]
+    letter = shown_as.letter if canvas.look.braille else shown_as.plain
+    if letter:
+        canvas.write(
+            letter, round(x) // canvas.per_x, round(y) // canvas.per_y, NOBODY if item.pen is None else item.pen
+        )
+    elif canvas.look.braille:
+        along = canvas.x(item.along[0]) - canvas.x(0.0), canvas.y(item.along[1]) - canvas.y(0.0)
+        _parts(shown_as.parts, x, y, along, item.pen, canvas)
+
+
+def _link(item: Link, canvas: Canvas) -> None:
+    x, y = canvas.x(item.x), canvas.y(item.y)
+    along = canvas.x(item.to_x) - x, canvas.y(item.to_y) - y
+    if canvas.look.braille:
+        _parts(link(item.kind, DOT * math.hypot(*along)), x, y, along, item.pen, canvas)
+    else:
+        canvas.line(x, y, x + along[0], y + along[1], NOBODY if item.pen is None else item.pen)
+
+
+def _parts(
+    parts: Sequence[Part], x: float, y: float, along: tuple[float, float], number: int | None, canvas: Canvas
+) -> None:
+    """The parts of a symbol about a dot, its x along a way in dots."""
+    length = math.hypot(*along)
+    a, b = (along[0] / length, along[1] / length) if length > 0.0 else (1.0, 0.0)
+    for part in parts:
+        points = [(x + (p * a + q * b) / DOT, y + (p * b - q * a) / DOT) for p, q in part.points]
+        for (x0, y0), (x1, y1) in pairwise([*points, *points[: part.closed]]):
+            canvas.line(x0, y0, x1, y1, NOBODY if number is None else number)
+
+
+def _label(item: Label, canvas: Canvas) -> None:
+    """Placed when all else is (`_labels`)."""
 
 
 def _upright(item: Upright, canvas: Canvas) -> None:
@@ -423,5 +496,5 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
     Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _word,
-    Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+    Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from heuncli.named_tuples import NamedTuple
 
-BLACK, GREY, DIM, GRID, FAINT = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6"
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6", "#ffffff"
 
 
 class Pen(NamedTuple):
@@ -34,3 +34,14 @@ PENS = (
 def pen(number: int) -> Pen:
     """The pen of a number; beyond the last they begin anew."""
     return PENS[number % len(PENS)]
+
+
+def ink(number: int | None) -> str:
+    """The colour of the pen of a number; None: black."""
+    return BLACK if number is None else pen(number).colour
+
+
+def mixed(colour: str, share: float) -> str:
+    """A colour with white: so much of it."""
+    parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255.0 + share * (part - 255.0)):02x}" for part in parts)

@@ -1,30 +1,37 @@
 """A scene as something to look at: what its bodies look like in their own axes, and where its joints and loads stand.
 
 Everything is in body axes [m]; where it comes to stand at an instant follows from the body's pose. A body with shapes
-looks like them; one without is drawn as lines between its points.
+looks like them, with arms to points outside them; one without is drawn as lines between its points, or, where these
+are one place, as the ellipsoid that has its inertia.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
-from heuncli.scenery.solids import Surface, surfaces_of
-from heuncli.spec.models import Actuator, Spec, Spring
+from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
+from heuncli.spec.models import Actuator, Shape, Spec, Spring
 
 GROUND = "ground"
+SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
+OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
 
 class BodyLook(NamedTuple):
-    """A body: its named points (3,), the surfaces of its shapes, and, where it has none, lines between its points."""
+    """A body: its named points (3,), the surfaces of its shapes, and lines between its points, or from these to it.
+
+    spread: the surface is not its own, but of the ellipsoid that has its inertia.
+    """
 
     name: str
     points: Mapping[str, Array]
     surfaces: tuple[Surface, ...]
     lines: tuple[Array, ...]
+    spread: bool = False
 
 
 class JointLook(NamedTuple):
@@ -60,8 +67,8 @@ class Machine(NamedTuple):
     grounded: Mapping[str, Array]
 
 
-def machine_of(spec: Spec) -> Machine:
-    """What there is to be seen of a loaded spec."""
+def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
+    """What there is to be seen of a loaded spec; faces: of what is round, about its axis."""
     joints = tuple(
         JointLook(name, j.kind, j.a, np.array(j.p), j.b, np.array(j.q), np.array(j.axis))
         for name, j in spec.joints.items()
@@ -71,22 +78,40 @@ def machine_of(spec: Spec) -> Machine:
         for name, f in spec.forces.items()
         if isinstance(f, Spring | Actuator)
     )
-    bodies = tuple(_body(name, spec, joints, lines) for name in spec.bodies)
+    bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
     return Machine(spec.title, bodies, joints, lines, grounded)
 
 
-def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...]) -> BodyLook:
+def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
     """What a body looks like."""
     body = spec.bodies[name]
     points = {key: np.array(point, dtype=np.float64) for key, point in body.points.items()}
-    surfaces = tuple(surface for shape in body.shapes or () for surface in surfaces_of(shape))
-    if surfaces:
-        return BodyLook(name, points, surfaces, ())
     ends = [j.p for j in joints if j.a == name] + [j.q for j in joints if j.b == name]
     ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
-    ends += [*points.values(), np.array(body.center, dtype=np.float64)]
-    return BodyLook(name, points, (), (_through(ends),))
+    ends += points.values()
+    shapes = body.shapes or ()
+    surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
+    if surfaces:
+        ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
+        return BodyLook(name, points, surfaces, tuple(_arms(shapes, ends)))
+    # of point masses alone neither centre nor inertia is known yet, nor needed
+    centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
+    line = _through([*ends, *centre])
+    moments = np.array(body.inertia, dtype=np.float64)
+    gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
+    if float(np.ptp(line, axis=0).max()) < SMALL * gyration:
+        return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
+    return BodyLook(name, points, (), (line,))
+
+
+def _arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:
+    """Lines (2, 3) to the points that lie outside all shapes, from the nearest one that has an extent."""
+    solid = [shape for shape in shapes if shape.type != "point"]
+    for end in np.unique(np.array(ends).reshape(-1, 3), axis=0):
+        place, gap = min((reached(shape, end) for shape in solid), key=lambda found: found[1])
+        if gap > OUTSIDE * float(np.linalg.norm(end - place)):
+            yield np.array([place, end])
 
 
 def _through(ends: list[Array]) -> Array:

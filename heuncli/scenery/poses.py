@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Results
 from heuncli.scenery.machine import GROUND
@@ -17,7 +18,7 @@ Y, Z = np.array([0.0, 1.0, 0.0]), np.array([0.0, 0.0, 1.0])
 class Poses(NamedTuple):
     """Of each body the places of its origin (n, 3) and its attitudes (n, 3, 3), whose columns are its axes.
 
-    turns: the attitudes as unit quaternions w, x, y, z, (n, 4).
+    turns: the attitudes as unit quaternions w, x, y, z, (n, 4); none of what is only assembled.
     """
 
     times: Array
@@ -50,3 +51,10 @@ def up_of(spec: Spec, poses: Poses) -> Array:
     if gravity.any():
         return np.asarray(-gravity / np.linalg.norm(gravity))
     return Y if all(np.allclose(axes[:, :, 2], Z) for axes in poses.attitudes.values()) else Z
+
+
+def poses_at_start(mechanism: Mechanism, start: Assembly, t: float) -> Poses:
+    """The poses in which a scene is assembled."""
+    names = [body.name for body in mechanism.bodies]
+    places, attitudes = (dict(zip(names, own[:, None], strict=True)) for own in (start.position, start.rotation))
+    return Poses(np.array([t]), places, attitudes, {})

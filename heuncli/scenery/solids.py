@@ -9,7 +9,6 @@ from heuncli.results import Array
 from heuncli.spec.models import Shape, Vec
 
 ROUND = 24  # faces about an axis
-FLOORS = 12  # of a sphere, from pole to pole
 THIN = 0.015  # radius of a rod that has none, of its length
 
 
@@ -24,21 +23,63 @@ class Surface(NamedTuple):
     edges: tuple[Array, ...]
 
 
-def surfaces_of(shape: Shape) -> tuple[Surface, ...]:
-    """The surfaces of a shape; a point mass has none."""
+def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
+    """The surfaces of a shape, a round one with so many faces about its axis; a point mass has none."""
     if shape.type == "point":
         return ()
     if shape.type == "box":
         return (_box(shape),)
     if shape.type == "sphere":
-        return (_sphere(_vector(shape.center), shape.radius or 0.0),)
+        return (_sphere(_vector(shape.center), shape.radius or 0.0, faces),)
     start, end = _vector(shape.from_), _vector(shape.to)
     if shape.type == "rod":
         radius = THIN * float(np.linalg.norm(end - start))
-        return (_revolved(start, end, radius, radius, 0.0),)
+        return (_revolved(start, end, radius, radius, 0.0, faces),)
     first = shape.radius or 0.0
     last = first if shape.to_radius is None else shape.to_radius
-    return (_revolved(start, end, first, last, shape.inner_radius or 0.0),)
+    return (_revolved(start, end, first, last, shape.inner_radius or 0.0, faces),)
+
+
+def reached(shape: Shape, point: Array) -> tuple[Array, float]:
+    """The place of a shape that leads to a point, and how far outside the shape the point lies; 0: it does not.
+
+    That is on its axis, of a box on its surface, of a sphere and a point mass its centre.
+    """
+    if shape.type == "point":
+        place = _vector(shape.at)
+        return place, float(np.linalg.norm(point - place))
+    if shape.type == "box":
+        axes = np.eye(3) if shape.rotation is None else np.array(shape.rotation, dtype=np.float64)
+        half = 0.5 * _vector(shape.size)
+        place = _vector(shape.center) + axes @ np.clip(axes.T @ (point - _vector(shape.center)), -half, half)
+        return place, float(np.linalg.norm(point - place))
+    if shape.type == "sphere":
+        place = _vector(shape.center)
+        return place, max(0.0, float(np.linalg.norm(point - place)) - (shape.radius or 0.0))
+    start, end = _vector(shape.from_), _vector(shape.to)
+    way = end - start
+    share = float((point - start) @ way / (way @ way))
+    place = start + min(max(share, 0.0), 1.0) * way
+    beside = float(np.linalg.norm(point - start - share * way))
+    beyond = max(share - 1.0, -share, 0.0) * float(np.linalg.norm(way))
+    first = shape.radius or 0.0
+    last = first if shape.to_radius is None else shape.to_radius
+    return place, max(beyond, beside - max(first, last))
+
+
+def ellipsoid(mass: float, center: Array, inertia: Array, faces: int = ROUND) -> Surface:
+    """The even ellipsoid of a mass with that inertia (3, 3) about its centre; flat where there is no such.
+
+    a1^2 = 5/(2 m) (A2 + A3 - A1)    of the principal moments A
+    """
+    moments, axes = np.linalg.eigh(inertia)
+    squares = np.maximum(2.5 / mass * (moments.sum() - 2.0 * moments), 0.0)
+    if np.linalg.det(axes) < 0.0:
+        axes = axes * np.array([1.0, 1.0, -1.0])
+    whole = np.sqrt(squares) * axes  # columns are the half axes
+    unit = _sphere(np.zeros(3), 1.0, faces)
+    edges = tuple(center + edge @ whole.T for edge in unit.edges)
+    return Surface(center + unit.corners @ whole.T, unit.faces, edges)
 
 
 def _vector(vector: Vec | None) -> Array:
@@ -63,25 +104,25 @@ def across(direction: Array) -> tuple[Array, Array]:
     return first, np.cross(direction, first)
 
 
-def circle(centre: Array, direction: Array, radius: float, count: int = ROUND) -> Array:
+def circle(centre: Array, direction: Array, radius: float, count: int) -> Array:
     """Points (count, 3) of a circle, counter-clockwise about the direction."""
     u, v = across(direction)
     angle = 2.0 * np.pi * np.arange(count) / count
     return np.asarray(centre + radius * (np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * v))
 
 
-def _revolved(start: Array, end: Array, first: float, last: float, inner: float) -> Surface:
+def _revolved(start: Array, end: Array, first: float, last: float, inner: float, n: int) -> Surface:
     """A cylinder, cone or tube: its wall in flat faces, its ends, its rims and two lines along it."""
     axis = (end - start) / np.linalg.norm(end - start)
-    low, high = circle(start, axis, first), circle(end, axis, last)
-    corners, n = [low, high], ROUND
+    low, high = circle(start, axis, first, n), circle(end, axis, last, n)
+    corners = [low, high]
     faces: list[tuple[int, ...]] = []
     for k in range(n):
         j = (k + 1) % n
         faces.append((k, j, n + j, n + k))
     edges = [_closed(low), _closed(high), np.array([low[0], high[0]]), np.array([low[n // 2], high[n // 2]])]
     if inner > 0.0:
-        inner_low, inner_high = circle(start, axis, inner), circle(end, axis, inner)
+        inner_low, inner_high = circle(start, axis, inner, n), circle(end, axis, inner, n)
         corners += [inner_low, inner_high]
         for k in range(n):
             j = (k + 1) % n
@@ -93,13 +134,13 @@ def _revolved(start: Array, end: Array, first: float, last: float, inner: float)
     return Surface(np.concatenate(corners), tuple(faces), tuple(edges))
 
 
-def _sphere(centre: Array, radius: float) -> Surface:
+def _sphere(centre: Array, radius: float, n: int) -> Surface:
     """Rings from pole to pole; three great circles as its edges."""
     axis = np.array([0.0, 0.0, 1.0])
-    levels = np.pi * np.arange(1, FLOORS) / FLOORS
-    rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a)) for a in levels]
+    levels = np.pi * np.arange(1, n // 2) / (n // 2)
+    rings = [circle(centre - radius * np.cos(a) * axis, axis, radius * np.sin(a), n) for a in levels]
     corners = np.concatenate([*rings, [centre - radius * axis, centre + radius * axis]])
-    n, m = ROUND, len(rings)
+    m = len(rings)
     faces: list[tuple[int, ...]] = []
     for i in range(m - 1):
         for k in range(n):
@@ -108,7 +149,7 @@ def _sphere(centre: Array, radius: float) -> Surface:
     for k in range(n):
         j = (k + 1) % n
         faces += [(m * n, j, k), (m * n + 1, (m - 1) * n + k, (m - 1) * n + j)]
-    edges = tuple(_closed(circle(centre, direction, radius)) for direction in np.eye(3))
+    edges = tuple(_closed(circle(centre, direction, radius, n)) for direction in np.eye(3))
     return Surface(corners, tuple(faces), edges)
 
 

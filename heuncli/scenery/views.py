@@ -1,8 +1,8 @@
 """From where a machine is seen: parallel projection onto a picture whose axes are r to the right, u up, d to the eye.
 
     right = r . x,   up = u . x,   depth = d . x (larger is nearer);   r, u, d orthonormal, r x u = d
-Up is against gravity where there is one, else z. At azimuth and elevation 0 x points to the right (y where x is up); from
-there the eye goes to the right by the azimuth and up by the elevation, as MATLAB's `view` counts them.
+Up is against gravity where there is one, else z. At azimuth and elevation 0 x points to the right (y where x is up);
+from there the eye goes to the right by the azimuth and up by the elevation, as MATLAB's `view` counts them.
 """
 
 from __future__ import annotations

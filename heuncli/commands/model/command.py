@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.model.request import ModelRequest
+from heuncli.errors import Problem
 from heuncli.report.export import dump
 from heuncli.report.model_text import note
 from heuncli.spec.load import load
@@ -22,9 +24,30 @@ def main(request: ModelRequest) -> int:
     """Run the command; returns the exit code."""
     require_other_file(request.output, [request.spec])
     form = format_of(request.format, request.output, FORMATS)
+    require_sketch(request, form)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     model: Mapping[str, Any] = describe(spec, reduce=not request.no_reduce)
-    emit(dump(dict(model)) if form == "json" else note(spec.title, model), request.output)
+    text = dump(dict(model)) if form == "json" else note(spec.title, model)
+    if request.sketch:
+        from heuncli.commands.model.sketch import sketch  # what few ask for
+
+        text += "\n" + sketch(spec, request)
+    emit(text, request.output)
     warn(spec, None, request.quiet)
     return 0
+
+
+def require_sketch(request: ModelRequest, form: str) -> None:
+    """Say before the work what does not go with a drawing, or goes with it alone. Raises UsageError."""
+    if request.sketch and form != "text":
+        message = f"--sketch is a drawing in letters, and not in {form}"
+        raise UsageError(Problem("bad-option", message, hint="heun plot SPEC scene -o x.svg draws the scene as a file"))
+    given = [name for name, value in (("--view", request.view), ("--width", request.width)) if value is not None]
+    if given and not request.sketch:
+        message = f"{', '.join(given)}: of a drawing, which is not asked for"
+        raise UsageError(Problem("bad-option", message, hint="add --sketch"))
+    if request.view is not None:
+        from heuncli.cli.views import require_view
+
+        require_view(request.view)

@@ -2,7 +2,7 @@
 
 from typing import Annotated
 
-from heuncli.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, VIEW, WIDTH, Option
 from heuncli.named_tuples import NamedTuple
 
 
@@ -15,5 +15,10 @@ class ModelRequest(NamedTuple):
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[str | None, CASE] = None
     no_reduce: Annotated[bool, NO_REDUCE] = False
+    sketch: Annotated[bool, Option(("--sketch",), "Below it a drawing of the machine as assembled, in letters.")] = (
+        False
+    )
+    view: Annotated[str | None, VIEW] = None
+    width: Annotated[int | None, WIDTH] = None
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
+from heuncli.cli.figure_letters import in_letters, require_width
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, save
 from heuncli.cli.picture_files import as_file, picture_form
@@ -11,7 +12,6 @@ from heuncli.cli.units import units
 from heuncli.commands.plot.asked import asked
 from heuncli.commands.plot.kinds import require_heeded
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.terminals import in_letters, require_width
 from heuncli.drawing.figure import Figure
 
 

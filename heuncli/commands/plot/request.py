@@ -11,6 +11,8 @@ from heuncli.cli.options import (
     STEP,
     TIME_LIMIT,
     TOLERANCE,
+    VIEW,
+    WIDTH,
     WITHOUT,
     Option,
 )
@@ -42,21 +44,22 @@ class PlotRequest(NamedTuple):
     ] = None
     measured: Annotated[
         tuple[str, ...],
-        Option(("--with",), "Measured points over it: a CSV's columns of x and y. May be repeated.", "FILE:X:Y"),
+        Option(
+            ("--with",),
+            "Measured points over it: a CSV's columns, as t:F or t[ms]:2[kN]. May be repeated.",
+            "FILE:X:Y",
+        ),
     ] = ()
     at: Annotated[str | None, Option(("--at",), "At these instants: of diagrams and scenes.", "T,...")] = None
     axes: Annotated[
         str | None, Option(("--axes",), "Joint loads in the axes of the one or the other body.", "world|from|to")
     ] = None
-    view: Annotated[
-        str | None,
-        Option(("--view",), "From where a scene is seen: along x, y, z, or azimuth, elevation [deg].", "x|y|z|A,E"),
-    ] = None
+    view: Annotated[str | None, VIEW] = None
     tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
         False
     )
     without: Annotated[tuple[str, ...], WITHOUT] = ()
-    width: Annotated[int | None, Option(("--width",), "Columns of a drawing in letters.", "COLUMNS")] = None
+    width: Annotated[int | None, WIDTH] = None
     units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
     set: Annotated[tuple[str, ...], SET] = ()
     case: Annotated[

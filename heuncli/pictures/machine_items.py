@@ -1,0 +1,307 @@
+"""A machine as a view shows it: its bodies from the farthest to the nearest, what joins them, its joints, their names.
+
+The joints' symbols follow from how they hold and let turn (joint_kinds.py), so that a new kind has one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from functools import cached_property
+
+import numpy as np
+
+from heuncli.drawing.figure import Item, Label, Link, Polygon, Strokes, Symbol
+from heuncli.joint_kinds import JOINTS, TYPES, Kind
+from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.lettered import letters
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machine
+from heuncli.scenery.poses import Poses
+from heuncli.scenery.silhouettes import Solid, edges_seen, outline, solid_of
+from heuncli.scenery.views import View
+from heuncli.spec.models import Spec, Spring
+
+PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
+DRIVEN, APPLIED = 3, 3
+ALONG = 0.35  # of a unit axis that is seen: what shows less of it points at the eye
+MOST_NAMED = 60  # bodies and joints: beyond that a picture of names alone
+MOST_CENTRES = 40  # bodies whose centres of mass are marked
+BAR, ARM, THIN = 3.0, 2.0, 0.7  # pixels: a body that is lines, lines beside shapes, of an instant not the first
+LEVEL = 1e-6  # of the depth of a picture: what is as far
+DOWN = (0.0, -1.0)
+TURNS: Mapping[str, tuple[str, str]] = {  # how it lets turn, seen along the axis and from aside
+    "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"), "all": ("square", "square"),
+    "slider": ("slider", "slider"),
+}  # fmt: skip
+HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("field", "table")}  # along and aside
+
+
+@record
+class Stood:
+    """A machine where it stands at some instants, and how it is seen; size: of the unit that is shown in a metre.
+
+    centers: of mass, in body axes.
+    """
+
+    spec: Spec
+    machine: Machine
+    centers: Mapping[str, Array]
+    poses: Poses
+    view: View
+    size: float
+
+    def seen(self, body: str, points: Array, k: int) -> Array:
+        """Where a body's points (..., 3) are seen at an instant, (..., 2) in the unit shown."""
+        return self.size * self.view.flat(self.poses.at(body, points, k))
+
+    def seen_along(self, body: str, axis: Array, k: int) -> Array:
+        """A direction in a body's axes as it is seen, (2,) of its length that is seen."""
+        return self.view.flat(axis if body == GROUND else self.poses.attitudes[body][k] @ axis)
+
+    def sense(self, body: str, axis: Array, k: int) -> float:
+        """How much a direction in a body's axes points to the eye, -1 to 1."""
+        return float(self.view.depth(axis if body == GROUND else self.poses.attitudes[body][k] @ axis))
+
+    @cached_property
+    def solids(self) -> dict[str, tuple[Solid, ...]]:
+        """The solids of each body."""
+        shown = {body.name: body.surfaces for body in self.machine.bodies}
+        for look in self.machine.joints:  # of what cannot turn nobody asks for the inertia
+            if GROUND in (look.a, look.b) and kind_of(look, self.spec).turn.asks == "all":
+                shown |= {
+                    body.name: () for body in self.machine.bodies if body.spread and body.name in (look.a, look.b)
+                }
+        return {name: tuple(map(solid_of, surfaces)) for name, surfaces in shown.items()}
+
+    @cached_property
+    def pens(self) -> dict[str, int]:
+        """A pen for each body."""
+        return {body.name: PENS[k % len(PENS)] for k, body in enumerate(self.machine.bodies)}
+
+    @cached_property
+    def are_named(self) -> bool:
+        """Whether the bodies and joints are few enough for their names to be told."""
+        return len(self.machine.bodies) + len(self.machine.joints) <= MOST_NAMED
+
+    @cached_property
+    def masses(self) -> dict[str, list[Array]]:
+        """The point masses of each body, in its axes."""
+        return {
+            name: [np.array(shape.at) for shape in body.shapes or () if shape.type == "point"]
+            for name, body in self.spec.bodies.items()
+        }
+
+    def below(self, body: str, place: Array, k: int) -> tuple[float, float]:
+        """Where the ground is drawn that holds a body at a place: under it, over it where the body hangs."""
+        if body == GROUND:
+            return DOWN
+        centre = self.seen(body, self.centers[body], k)
+        return (0.0, 1.0) if centre[1] < place[1] - 0.2 * abs(centre[0] - place[0]) else DOWN
+
+
+class Piece(NamedTuple):
+    """A part of a body with what is drawn of it: how near it is, how large, to be drawn in this order."""
+
+    depth: float
+    area: float
+    items: tuple[Item, ...]
+
+
+def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
+    """The bodies at an instant, far ones first; what lies equally far large ones first."""
+    pieces = [piece for body in stood.machine.bodies for piece in _pieces(stood, body, k, thin)]
+    depths = [piece.depth for piece in pieces if piece.depth > -np.inf]
+    step = LEVEL * (max(depths) - min(depths)) if depths else 0.0
+
+    def order(piece: Piece) -> tuple[float, float]:
+        level = piece.depth if step == 0.0 or piece.depth == -np.inf else round(piece.depth / step)
+        return float(level), -piece.area
+
+    pieces.sort(key=order)
+    return [item for piece in pieces for item in piece.items]
+
+
+def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[Piece]:
+    """The solids of a body, or the lines between its points."""
+    pen = stood.pens[body.name]
+    for solid in stood.solids[body.name]:
+        places = stood.poses.at(body.name, solid.surface.corners, k)
+        around = outline(stood.size * stood.view.flat(places))
+        if body.spread:
+            yield Piece(-np.inf, area(around), (Polygon(body.name, around, pen, filled=not thin, width=THIN),))
+            continue
+        lines: tuple[Item, ...] = ()
+        if not thin:
+            edges = edges_seen(solid, stood.poses.attitudes[body.name][k], stood.view)
+            lines = (Strokes(stood.seen(body.name, edges, k), pen, THIN),)
+        shape = Polygon(body.name, around, pen, solid=not thin, width=THIN if thin else 1.3)
+        yield Piece(float(stood.view.depth(places).mean()), area(around), (shape, *lines))
+    for line in body.lines:
+        if len(line) > 1:
+            places = stood.poses.at(body.name, line, k)
+            ends = stood.seen(body.name, line, k)
+            width = ARM if stood.solids[body.name] else BAR
+            strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
+            yield Piece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
+
+
+def on_paper(place: Array) -> tuple[float, float]:
+    """The two numbers of a place (2,)."""
+    x, y = place.tolist()
+    return float(x), float(y)
+
+
+def area(corners: Array) -> float:
+    """The area of a polygon (n, 2)."""
+    x, y = corners.T
+    return 0.5 * abs(float(x @ np.roll(y, -1) - y @ np.roll(x, -1)))
+
+
+def joints(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
+    """The joints, those that slide beneath those that turn: a pin in a slider stands before it."""
+    looks = sorted(stood.machine.joints, key=lambda look: not kind_of(look, stood.spec).shifts)
+    return [item for look in looks for item in joint(stood, look, k, thin=thin)]
+
+
+def kind_of(joint: JointLook, spec: Spec) -> Kind:
+    """What a joint is, in a scene declared planar, too."""
+    kind = TYPES[joint.kind]
+    return JOINTS[kind.planar] if spec.space == "planar" and kind.planar is not None else kind
+
+
+def turning(kind: Kind) -> str:
+    """How a joint lets turn: a row of TURNS."""
+    if kind.turn.asks == "all" and kind.shifts:
+        return "slider"
+    return "axis" if kind.turn.asks == "free" and not kind.ball else kind.turn.asks
+
+
+def joint(stood: Stood, look: JointLook, k: int, *, thin: bool = False) -> list[Item]:
+    """The symbol of a joint, with the ground where it stands on it; thin: a line, if it is one."""
+    kind, name = kind_of(look, stood.spec), f"{look.name}: {look.kind}"
+    x, y = stood.seen(look.b, look.q, k).tolist()
+    if kind.keeps_distance:
+        return _rod(stood, look, k, thin)
+    if thin:
+        return []
+    if not stood.are_named and GROUND not in (look.a, look.b):
+        return [Symbol(x, y, "dot")]
+    axis = stood.seen_along(look.a, look.axis / np.linalg.norm(look.axis), k)
+    aside = int(float(np.hypot(*axis)) > ALONG)
+    along = (float(axis[0]), float(axis[1])) if aside else (1.0, 0.0)
+    items: list[Item] = [*_ground(stood, look, kind, along if aside else None, k)]
+    if kind.hold.asks in HOLDS:
+        items.append(Symbol(x, y, HOLDS[kind.hold.asks][aside], along, None, name))
+    # a ball in a bore that is seen from its end holds in the picture as a pin does
+    turn = "axis" if kind.hold.asks == "line" and not aside and kind.ball else turning(kind)
+    items.append(Symbol(x, y, TURNS[turn][aside], along, None, name))
+    return items
+
+
+def _ground(stood: Stood, look: JointLook, kind: Kind, along: tuple[float, float] | None, k: int) -> Iterator[Symbol]:
+    """The ground at a joint that stands on it; along: its axis as it is seen, None: towards the eye."""
+    if GROUND not in (look.a, look.b):
+        return
+    other = look.b if look.a == GROUND else look.a
+    place = stood.seen(look.b, look.q, k)
+    below = stood.below(other, place, k)
+    symbol = "foot"
+    if kind.hold.asks in HOLDS:
+        symbol = "bed"
+        if along is not None and kind.hold.asks == "line":
+            across = np.array([-along[1], along[0]])
+            below = tuple((across if across @ below > 0.0 else -across).tolist())
+        elif along is not None:
+            below = -along[0], -along[1]
+    elif kind.turn.asks == "all":
+        symbol = "clamp"
+        away = place - stood.seen(other, stood.centers[other], k) if other != GROUND else np.zeros(2)
+        below = tuple(away.tolist()) if away.any() else DOWN
+    yield Symbol(*on_paper(place), symbol, below, None, f"{look.name}: on the ground")
+
+
+def _rod(stood: Stood, look: JointLook, k: int, thin: bool) -> list[Item]:
+    """A rod, a rope, or a rod whose length is driven."""
+    own = stood.spec.joints[look.name]
+    kind = "rope" if own.tension_only else "rod"
+    pen: int | None = None
+    if any(drive.joint == look.name for drive in stood.spec.drives.values()):
+        kind, pen = "actuator", DRIVEN
+    what = "rope" if own.tension_only else look.kind
+    return _link(stood, LineLook(look.name, what, look.a, look.p, look.b, look.q), kind, pen, k, thin)
+
+
+def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[Item]:
+    """A spring, damped or not, or an actuator."""
+    force = stood.spec.forces[look.name]
+    kind = "damped spring" if isinstance(force, Spring) and force.damping else look.kind
+    return _link(stood, look, kind, APPLIED, k, thin)
+
+
+def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin: bool) -> list[Item]:
+    """What joins two points, with the ground at those that stand on it."""
+    first, second = (stood.seen(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
+    if thin:
+        return [Strokes(np.array([[first, second]]), pen, THIN)]
+    items: list[Item] = []
+    for body, place, other in ((look.a, first, second), (look.b, second, first)):
+        if body == GROUND:
+            below = (0.0, 1.0) if other[1] < place[1] - 0.2 * abs(other[0] - place[0]) else DOWN
+            items.append(Symbol(*on_paper(place), "foot", below, None, f"{look.name}: on the ground"))
+    return [*items, Link(*on_paper(first), *on_paper(second), kind, pen, f"{look.name}: {look.kind}")]
+
+
+def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
+    """What drives joints, and what acts in them."""
+    looks = {look.name: look for look in stood.machine.joints}
+    acting = [(drive.joint, drive.name, "drive", DRIVEN) for drive in stood.spec.drives.values()]
+    for name, force in stood.spec.forces.items():
+        if force.type in ("torque", "turn_spring"):
+            acting.append((force.joint, name, force.type, APPLIED))
+    for joint_name, name, what, pen in acting:
+        look = looks[joint_name]
+        kind = kind_of(look, stood.spec)
+        if kind.keeps_distance:
+            continue
+        axis = look.axis / np.linalg.norm(look.axis)
+        seen = stood.seen_along(look.a, axis, k)
+        symbol, along = "coil", (1.0, 0.0)
+        if what != "turn_spring":
+            slides = bool(kind.shifts) and kind.turn.asks == "all"
+            symbol = "turning" if stood.sense(look.a, axis, k) >= 0.0 else "turning back"
+            symbol = "sliding" if slides else symbol
+            along = (float(seen[0]), float(seen[1])) if slides and seen.any() else along
+        yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, pen, f"{name}: {what} in {joint_name}")
+
+
+def marks(stood: Stood, k: int) -> Iterator[Symbol]:
+    """Point masses and centres of mass."""
+    few = len(stood.machine.bodies) <= MOST_CENTRES
+    for body in stood.machine.bodies:
+        pen, centre = stood.pens[body.name], stood.centers[body.name]
+        masses = stood.masses[body.name]
+        for place in masses:
+            yield Symbol(
+                *on_paper(stood.seen(body.name, place, k)), "mass", (1.0, 0.0), pen, f"{body.name}: point mass"
+            )
+        if few and not any(np.allclose(place, centre, rtol=0.0, atol=1e-12) for place in masses):
+            yield Symbol(
+                *on_paper(stood.seen(body.name, centre, k)), "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass"
+            )
+
+
+def names(stood: Stood, k: int) -> Iterator[Label]:
+    """The names of bodies, joints, springs and actuators; in letters capitals, numbers and small letters."""
+    if not stood.are_named:
+        return
+    for letter, body in zip(letters("A"), stood.machine.bodies, strict=False):
+        x, y = stood.seen(body.name, stood.centers[body.name], k).tolist()
+        yield Label(x, y, body.name, letter, stood.pens[body.name])
+    for number, look in enumerate(stood.machine.joints, 1):
+        ends = stood.seen(look.b, look.q, k), stood.seen(look.a, look.p, k)
+        x, y = (0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]).tolist()
+        yield Label(x, y, look.name, str(number))
+    for letter, own in zip(letters("a"), stood.machine.lines, strict=False):
+        x, y = (0.5 * (stood.seen(own.a, own.p, k) + stood.seen(own.b, own.q, k))).tolist()
+        yield Label(x, y, own.name, letter, APPLIED)
