@@ -299,8 +299,10 @@ def _words(item: Words, box: PanelBox) -> Iterator[Shape]:
 def _upright(item: Upright, box: PanelBox) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
-    if item.above:
-        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
+    if item.above:  # within the picture
+        half = min(0.5 * wide(shown(item.text), SMALL) + 4.0, 0.5 * (box.right + RIGHT))
+        middle = max(half, min(x, box.right + RIGHT - half))
+        yield Text(middle, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
 def _blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
