@@ -54,7 +54,7 @@ def diagrams(
     banded = False
     for name in names:
         drawn = list(_drawn(sources, name, at))
-        words.append(_heading(sources[0], name))
+        words += dict.fromkeys(_heading(source, name) for source in sources)
         for each in drawn:
             if each.name and (each.name, each.pen) not in legend:
                 legend.append((each.name, each.pen))
@@ -96,11 +96,11 @@ def _words(source: Pictured, at: Sequence[float] | None) -> Iterator[str]:
         told.append("at one instant")
     else:
         told.append(str(results.model.get("method", "")))
-    if at is not None and len(at) == 1:
-        told.append(f"t = {short(at[0])} s")
+        alone = results.time if at is None else at
+        told += [f"t = {short(float(alone[0]))} s"] * (len(alone) == 1)
     if horizon is not None:
         told.append(f"nothing is claimed, and drawn, from t = {horizon:.6g} s on")
-    blows = len(results.impulses)
+    blows = len(study.history.blows)
     if study.spec.analysis.type == "impulse":
         told[1] = "impulses of a blow"
     elif blows:

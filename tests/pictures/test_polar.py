@@ -86,6 +86,7 @@ def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path) -> 
     assert {"0°", "90°", "180°", "270°"} <= set(words.split("\n")) and "360°" not in words.split("\n")
     marks, centripetal = panel.spots(filled=False), 2 * 0.1 * (2 * np.pi) ** 2
     assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
+    assert "joints.main.force: 7.8956" in words and "N all along" in words  # no place of it is the largest
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
 
 
