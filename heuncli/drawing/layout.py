@@ -255,11 +255,13 @@ def _parts(
     for part in parts:
         # y to the left of x: on paper y goes down
         points = tuple((x + p * a + q * b, y + p * b - q * a) for p, q in part.points)
-        if part.fill:
-            yield Area(points, colour if part.fill == "ink" else WHITE)
-        if part.fill != "ink":
+        if part.fill == "ink":
+            yield Area(points, colour, name=name)
+        else:
+            if part.fill:
+                yield Area(points, WHITE)
             yield Line((*points, points[0]) if part.closed else points, colour, 1.2, name=name)
-            name = ""  # told once
+        name = ""  # told once
 
 
 def _label(item: Label, box: PanelBox) -> Iterator[Shape]:
@@ -277,11 +279,11 @@ def _arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     a, b = (x1 - x0) / length, (y1 - y0) / length
     head = min(HEAD, 0.6 * length)
     back = x1 - head * a, y1 - head * b
-    yield Line(((x0, y0), back), colour, 1.6, name=shown(item.name))
+    name = shown(item.told or item.name)
+    yield Line(((x0, y0), back), colour, 1.6, name=name)
     side = 0.4 * head
-    yield Area(
-        ((x1, y1), (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)), colour, 1.0
-    )
+    left, right = (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)
+    yield Area(((x1, y1), left, right), colour, 1.0, name)
     if item.name:
         yield Text(x1 + 5.0 * a, y1 + 5.0 * b + 4.0, shown(item.name), SMALL, "end" if a < 0.0 else "start", colour)
 
@@ -299,8 +301,10 @@ def _words(item: Words, box: PanelBox) -> Iterator[Shape]:
 def _upright(item: Upright, box: PanelBox) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
-    if item.above:
-        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
+    if item.above:  # within the picture
+        half = min(0.5 * wide(shown(item.text), SMALL) + 4.0, 0.5 * (box.right + RIGHT))
+        middle = max(half, min(x, box.right + RIGHT - half))
+        yield Text(middle, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
 def _blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
