@@ -215,6 +215,9 @@ def _extremes(drawn: PanelCourse, size: float, across: Across) -> Iterator[Spot]
             text = f"{figures(peak.value, error, size)} at {at}"
         else:
             text = figures(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
+            x = across.size * float(drawn.x[np.argmax(np.isfinite(drawn.x + drawn.course.values))])
+        if not math.isfinite(x):  # what it is drawn over is open there
+            continue
         yield Spot(x, size * peak.value, text, drawn.pen, filled=True, note=f"{drawn.name}: {word} {text}")
 
 
