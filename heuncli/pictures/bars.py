@@ -156,7 +156,7 @@ class WholeBar:
     @property
     def struck(self) -> bool:
         """Whether impulses are told of it, of a scene that is nothing but a blow."""
-        return self.study.spec.analysis.type == "impulse"
+        return self.study.spec.analysis.type == "impulse" and bool(self.study.results.impulses)
 
     @cached_property
     def certain(self) -> Certainty:
