@@ -200,3 +200,4 @@ def test_open_loads_are_said_first(heun: Heun) -> None:
     assert "joints.A Fz + joints.B Fz = 123.1 N; the split is open" in read.by_tag["li"]
     split = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-", "--least-norm").stdout)
     assert "other splits do as well" in split.by_tag["header"][0]
+    assert any(text.startswith("chosen, not certain: A Fz, B Fz") for text in split.by_tag["li"])
