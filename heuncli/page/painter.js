@@ -47,14 +47,15 @@ export class Painter {
    * A face with some of its sides drawn.
    * @param {number} near @param {number[]} points @param {number[]} middle @param {string} fill
    * @param {number[]} sides pieces of line: from right, down, to right, down, ... @param {string} line
+   * @param {number} own how opaque it is itself, 0 to 1
    */
-  face(near, points, [x, y], fill, sides, line) {
+  face(near, points, [x, y], fill, sides, line, own) {
     widen(points, x, y);
     this.items.push({
       near,
       paint: (pen, opaque) => {
         round(pen, points);
-        filled(pen, fill, opaque);
+        filled(pen, fill, own * opaque);
         if (!sides.length) return;
         pen.beginPath();
         for (let k = 0; k < sides.length; k += 4) {
