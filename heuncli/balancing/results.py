@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from heuncli.balancing.effects import MassEffects
 from heuncli.records import fields, record
 from heuncli.results import Array, Block
@@ -29,6 +31,12 @@ class OrderRow:
     against: float | None = None
     across: bool = False
     parts: Mapping[str, tuple[Array, Array]] | None = None
+
+    @property
+    def reach(self) -> float:
+        """The largest magnitude over a turn: of what swings along a line its amplitude, of a circle its radius."""
+        a = self.amplitude * np.exp(-1j * self.phase)
+        return float(np.sqrt(0.5 * (np.sum(np.abs(a) ** 2) + abs(np.sum(a * a)))))
 
     def block(self) -> Block:
         """As the JSON has it."""

@@ -8,7 +8,6 @@ import sys
 from heuncli.cli import terminal
 from heuncli.cli.entry import UsageError
 from heuncli.drawing.figure import Figure
-from heuncli.drawing.letters import drawn, look_of
 from heuncli.errors import Problem
 
 WIDTH = 100  # columns where there is no terminal
@@ -24,6 +23,8 @@ def require_width(width: int | None) -> None:
 
 def in_letters(figure: Figure, width: int | None, output: str | None = None) -> str:
     """The figure as text, for the terminal or for a file."""
+    from heuncli.drawing.letters import drawn, look_of
+
     present = output is None and terminal.present()
     columns = width or (terminal.width() - 1 if present else WIDTH)
     plain = present and os.environ.get("TERM", "") in terminal.PLAIN

@@ -95,12 +95,12 @@ def _grid(part: ReportTable) -> str:
     kinds = ["left" if column.align == "left" else "" for column in part.columns]
     heads = [element("th", escaped(column.head), scope="col", class_=kind)
              for column, kind in zip(part.columns, kinds, strict=True)]  # fmt: skip
+    name, _, rest = part.caption.partition("  ")
     table = ""
     if part.columns:
         body = "\n".join(_row(row, kinds) for row in part.rows)
         table = element("thead", element("tr", "".join(heads))) + "\n" + element("tbody", body)
-        table = element("div", element("table", table), class_="wide")
-    name, _, rest = part.caption.partition("  ")
+        table = element("div", element("table", table, aria_label=name), class_="wide")
     caption = element("h3", escaped(name) + (" " + element("small", escaped(rest)) if rest else ""))
     notes = "".join(element("li", escaped(note)) for note in part.notes)
     return element("div", caption + "\n" + table + (element("ul", notes, class_="notes") if notes else ""))

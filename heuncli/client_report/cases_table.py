@@ -23,12 +23,12 @@ from heuncli.client_report.parts import ReportCell, ReportTable, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
-from heuncli.report.extremes_tables import MANY, PARTLY_OPEN_NOTE
+from heuncli.report.extremes_tables import MANY, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.envelopes import Bound
 
 MOST_CASES = 12  # told in a line each; of more those that govern
-GOVERNS = "bold: the least and the greatest of all load cases; of magnitudes the greatest alone"
+GOVERNS = "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open"
 PARTLY = "*"
 STEADY = "without an instant: the same at all instants, to the digits shown"
 ERRORS = "±: the error that the run states of the number, rounding included"
@@ -52,6 +52,7 @@ def cases_table(
         else:
             rows += ["  ".join(filter(None, (group.name, group.note))), *lines]
     below = [*_notes(of, rows), *notes]
+    below += [NOT_SEARCHED] if not all(run.searched for run in of.runs) else []
     below += [FEW_CASES.format(len(of.runs))] if len(shown) < len(of.runs) else []
     below += [f"0 throughout: {some(nothing)}"] if nothing else []
     return ReportTable(caption, _columns(of, along=along) if rows else [], rows, below)
@@ -104,9 +105,9 @@ def _written(of: Reported, group: LoadGroup) -> Iterator[WrittenRow]:
         for _, ends in own:
             families.setdefault((row.family, ends.unit), []).append(ends)
     for row, own in found:
-        run, first = own[0]
+        first = own[0][1]
         unit, size = of.units.of(first.unit)
-        how = style_of(families[row.family, first.unit], run, size)
+        how = style_of(families[row.family, first.unit], of, size)
         yield WrittenRow(row, own, unit, size, {run.name: _texts(ends, how, size) for run, ends in own})
 
 
@@ -137,7 +138,8 @@ def _of_cases(
 ) -> Iterator[Sequence[ReportCell]]:
     """A line a case; the first has the name of the number and its unit."""
     low, high = governs.low(one.row.path), governs.high(one.row.path)
-    several = len(of.runs) > 1
+    known = not one.words & {OPEN, UNKNOWN} and not any(ends.parts_open for _, ends in one.found)
+    several = known and len(of.runs) > 1  # what is open in a case may be larger there
     lead = [one.row.label, one.unit if one.unit != "1" else ""]
     for run, ends in one.found:
         if run.name not in shown:

@@ -23,7 +23,8 @@ def check_parts(of: Reported) -> list[Part]:
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]
     rows = [_row(of, outcome, cases=cases) for outcome in of.outcomes]
     failed = [f"{outcome.name}: {outcome.failure}" for outcome in of.outcomes if outcome.failure is not None]
-    return [ReportTable("CHECKS  as heun check SPEC makes them; in SI units", columns, rows, failed)]
+    changed = ", with what was given on the command line" if of.given else ""
+    return [ReportTable(f"CHECKS  as heun check makes them{changed}; in SI units", columns, rows, failed)]
 
 
 def _row(of: Reported, outcome: Outcome, *, cases: bool) -> list[ReportCell]:

@@ -9,7 +9,7 @@ from heuncli.client_report.first_page import first_page
 from heuncli.client_report.happenings import happening_parts
 from heuncli.client_report.histories import history_parts
 from heuncli.client_report.load_table import load_tables
-from heuncli.client_report.machine import model_parts
+from heuncli.client_report.machine import drawing_parts, model_parts
 from heuncli.client_report.parts import Chapter, ClientReport, Part, Sentence, Verbatim
 from heuncli.client_report.reported import Reported
 from heuncli.client_report.sections import section_parts
@@ -17,6 +17,7 @@ from heuncli.client_report.trust import open_parts, trust_parts
 
 MOST_LINES = 2000  # of a spec that is printed
 CHAPTERS: Sequence[tuple[str, str, Callable[[Reported], list[Part]]]] = (
+    ("machine", "The machine", drawing_parts),
     ("loads", "Loads", load_tables),
     ("sections", "Sections", section_parts),
     ("histories", "Histories", history_parts),

@@ -16,6 +16,7 @@ from heuncli.telling.envelopes import Bound, envelope
 from heuncli.telling.kept import BEYOND, KeptNumber
 
 LEAST, GREATEST = "least", "greatest"
+FINEST = 9  # decimals of places [m]: what is below is nothing
 LOWEST, HIGHEST = ".lowest", ".highest"  # of a run of cuts
 
 
@@ -103,11 +104,11 @@ def governing(of: Reported) -> Governing:
     return Governing(least, greatest)
 
 
-def style_of(ends: Sequence[Ends], run: ReportedRun, size: float) -> Style:
+def style_of(ends: Sequence[Ends], of: Reported, size: float) -> Style:
     """How numbers of one family are written in a unit of which so many are one in SI."""
     scale = max((abs(value) for one in ends for value in one.values), default=0.0)
     error = max((one.error for one in ends), default=0.0)
-    lost = max((run.page.certain.lost(one.unit) for one in ends), default=0.0)
+    lost = max((run.page.certain.lost(one.unit) for one in ends for run in of.runs), default=0.0)
     return style(scale * size, error * size, lost * size)
 
 
@@ -129,7 +130,7 @@ def place_text(place: str | None, units: Units, *, named: bool = True) -> str:
         return ""
     distance, _, side = place.partition(" m")
     unit, size = units.of("m")
-    return f"{float(distance) * size:.5g}{f' {unit}' * named}{side}"
+    return f"{round(float(distance), FINEST) * size:.5g}{f' {unit}' * named}{side}"
 
 
 def instant_text(at: float | None, run: ReportedRun) -> str:
@@ -177,7 +178,7 @@ def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
     run = next(run for run in of.runs if run.name == case)
     unit, size = of.units.of(ends.unit)
     high = Bound(float(ends.high.value), ends.high.at, case)
-    how = style_of(list(known.values()), run, size)
+    how = style_of(list(known.values()), of, size)
     if how.write(high.value * size) == "0":
         return None
     steady = ends.high.place is None and is_steady(ends, how, size)

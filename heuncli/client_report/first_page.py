@@ -125,15 +125,16 @@ def _largest(of: Reported) -> Iterator[Sentence]:
 
 
 def _struck(of: Reported) -> Iterator[Sentence]:
-    """The blows, and their largest impulse."""
+    """The blows before the horizon, and their largest impulse."""
     for run in of.runs:
-        blows = run.results.impulses
+        horizon = run.results.accuracy.get("horizon")
+        blows = [blow for blow in run.results.impulses if horizon is None or float(blow["time"]) < horizon]
         if not blows:
             continue
         unit, size = of.units.of("N·s")
         most = size * max(sizes_of(blow, of.labels)[0] for blow in blows)
-        text = f"{count(len(blows), 'blow')}; largest impulse of a joint, a stop or on the ground: {most:.6g} {unit}."
-        yield Sentence(f"Case {run.name}: {text}" if run.name else text)
+        text = f"{count(len(blows), 'blow')}; the largest impulse of a joint, on the ground or of all bodies together:"
+        yield Sentence(f"{f'Case {run.name}: ' if run.name else ''}{text} {most:.6g} {unit}.")
 
 
 def _open(of: Reported) -> Iterator[Sentence]:

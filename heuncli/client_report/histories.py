@@ -13,29 +13,41 @@ from heuncli.pictures.histories import history
 from heuncli.telling.envelopes import Bound
 
 MOST = 3  # joints in a figure
+MOST_OVER = 4  # cases over each other
 
 
 def history_parts(of: Reported) -> list[Part]:
-    """A figure for each case that governs one of the joints with the largest forces, or the largest moment."""
-    by_case: dict[str, list[str]] = {}
-    for path, case in _chosen(of):
-        by_case.setdefault(case, []).append(path)
+    """The joints with the largest forces and the one with the largest moment: a figure of all cases, if these are few.
+
+    Of many cases each that governs one of them has a figure of its own.
+    """
+    chosen = list(_chosen(of))
+    moving = [run for run in of.runs if len(run.results.time) > 1]
+    if not chosen or not moving:
+        return []
+    if 1 < len(moving) <= MOST_OVER:
+        figure = _figure(of, moving, [path for path, _ in chosen])
+        return [Drawing(figure, "The most loaded joints over time, in all load cases: magnitudes")]
     parts: list[Part] = []
-    for run in of.runs:
-        if run.name in by_case and len(run.results.time) > 1:
+    for run in moving:
+        paths = [path for path, case in chosen if case == run.name]
+        if paths:
             case = f", load case {run.name}" if run.name else ""
-            caption = f"The most loaded joints over time{case}: magnitudes"
-            parts.append(Drawing(_figure(of, run, by_case[run.name]), caption))
+            parts.append(Drawing(_figure(of, [run], paths), f"The most loaded joints over time{case}: magnitudes"))
     return parts
 
 
-def _figure(of: Reported, run: ReportedRun, paths: Sequence[str]) -> Figure:
-    """A panel a path, so that courses that are nearly the same can be told apart."""
-    figures = [history([Pictured("", run.study)], [path], of.units) for path in paths]
+def _figure(of: Reported, runs: Sequence[ReportedRun], paths: Sequence[str]) -> Figure:
+    """A panel a path, so that courses that are nearly the same can be told apart; a curve a case."""
+    names = [run.name for run in runs] if len(runs) > 1 else [""]
+    sources = [Pictured(name, run.study) for name, run in zip(names, runs, strict=True)]
+    figures = [history(sources, [path], of.units) for path in paths]
     panels = [figure.panels[0]._replace(title=path) for figure, path in zip(figures, paths, strict=True)]
     above = [panel._replace(x=panel.x._replace(label="")) for panel in panels[:-1]]
     notes = dict.fromkeys(note for figure in figures for note in figure.notes)
-    return Figure("", (), [*above, panels[-1]], (), list(notes))
+    pens = [pen for _, pen in figures[0].legend]
+    legend = list(zip(names, pens, strict=True)) if len(runs) > 1 else []
+    return Figure("", (), [*above, panels[-1]], legend, list(notes))
 
 
 def _chosen(of: Reported) -> Iterator[tuple[str, str]]:

@@ -9,6 +9,7 @@ from heuncli.client_report.load_groups import TOTAL, groups_of, without_componen
 from heuncli.client_report.parts import Part, Sentence
 from heuncli.client_report.reported import Reported
 from heuncli.report.extremes_tables import MANY
+from heuncli.report.table_blocks import chosen_components
 from heuncli.report.table_plans import FOUNDATION, JOINTS, STOPS, TablePlan
 
 UNHELD = "There are no joints, and nothing stands on the ground."
@@ -28,7 +29,7 @@ def _table(of: Reported, plan: TablePlan) -> Iterator[Part]:
     groups = list(groups_of(of, plan))
     if not groups:
         return
-    notes: list[str] = []
+    notes = list(dict.fromkeys(note for run in of.runs for note in chosen_components(run.results)))
     if len(groups) > MANY:
         groups = [group if group.name == TOTAL else without_components(group) for group in groups]
         notes.append(TOO_MANY.format(len(groups), f"{plan.what or 'support'}s"))

@@ -21,13 +21,17 @@ LOADS = frozenset({"foundation", "joints", "sections", "forces", "impulses", "ev
 
 @record
 class ReportedRun:
-    """A load case, solved: its name, empty for the scene as it stands; kept: its numbers with extremes and errors."""
+    """A load case, solved: its name, empty for the scene as it stands; kept: its numbers with extremes and errors.
+
+    searched: whether its extremes were looked for between the samples, too.
+    """
 
     name: str
     title: str
     study: Study
     kept: KeptRun
     page: Page
+    searched: bool
 
     @property
     def results(self) -> Results:

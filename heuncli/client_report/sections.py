@@ -112,8 +112,8 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
 def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bool) -> list[ReportCell]:
     """The line of a section."""
     size = of.units.of("Pa")[1]
-    how = style_of([each.mises for each in found], of.runs[0], size)
-    shares = style_of([each.used for each in found if each.used is not None], of.runs[0], 1.0)
+    how = style_of([each.mises for each in found], of, size)
+    shares = style_of([each.used for each in found if each.used is not None], of, 1.0)
     end = (one.used or one.mises).high
     steady = end.place is None and is_steady(one.mises, how, size)
     strength = one.run.study.spec.sections[one.name].strength

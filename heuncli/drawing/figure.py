@@ -66,7 +66,7 @@ class Arrow(NamedTuple):
 class Spot(NamedTuple):
     """A marked place with its words; shape: one of drawing/picture.py.
 
-    note: what is told of it below the panels where the words find no room; the words where it is empty.
+    note: what is told of it under the panels where the words find no room; the words where it is empty.
     """
 
     x: float

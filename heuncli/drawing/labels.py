@@ -8,8 +8,8 @@ from collections.abc import Iterator, Sequence
 from heuncli.drawing.figure import Label
 from heuncli.drawing.pens import GREY, ink
 from heuncli.drawing.picture import Line, Shape, Text
-from heuncli.drawing.room import Field, WordBox
-from heuncli.drawing.scales import Box
+from heuncli.drawing.room import WordBox, WordField
+from heuncli.drawing.scales import PanelBox
 from heuncli.drawing.words import BASE, HIGH, SMALL, wide
 from heuncli.foreign_text import shown
 
@@ -19,7 +19,7 @@ NEAR = 18.0  # up to which they need no line
 FAR = 0.12  # what a pixel of distance costs, in cells of a curve
 
 
-def labelled(labels: Sequence[Label], box: Box, field: Field) -> tuple[list[Shape], list[str]]:
+def labelled(labels: Sequence[Label], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
     """The words of labels with their lines, and those for which there is no room in the field."""
     lines: list[Shape] = []
     texts: list[Shape] = []

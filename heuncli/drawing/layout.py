@@ -29,10 +29,10 @@ from heuncli.drawing.figure import (
     Words,
 )
 from heuncli.drawing.labels import labelled
-from heuncli.drawing.pens import DIM, FAINT, GREY, GRID, WHITE, ink, mixed, pen
+from heuncli.drawing.pens import BLACK, DIM, FAINT, GREY, GRID, WHITE, ink, mixed, pen
 from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
 from heuncli.drawing.room import WordBox, left_out
-from heuncli.drawing.scales import Box
+from heuncli.drawing.scales import PanelBox
 from heuncli.drawing.shades import shade
 from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
@@ -128,7 +128,7 @@ def _legend(figure: Figure, y: float, width: float) -> tuple[list[Shape], float]
     return shapes, y + 8.0
 
 
-def _box(panel: Panel, top: float, width: float) -> Box:
+def _box(panel: Panel, top: float, width: float) -> PanelBox:
     """The field of a panel below a height; of equal axes as wide as its unit is high, in the middle."""
     left, right, height = LEFT, width - RIGHT, panel.height
     if panel.equal:
@@ -136,10 +136,10 @@ def _box(panel: Panel, top: float, width: float) -> Box:
         scale = min((right - left) / across, height / up)
         middle = (left + right) / 2.0
         left, right, height = middle - scale * across / 2.0, middle + scale * across / 2.0, scale * up
-    return Box(left, top, right, top + height, panel.x, panel.y)
+    return PanelBox(left, top, right, top + height, panel.x, panel.y)
 
 
-def _panel(panel: Panel, box: Box, width: float) -> tuple[list[Shape], list[str]]:
+def _panel(panel: Panel, box: PanelBox, width: float) -> tuple[list[Shape], list[str]]:
     """The axes and items of a panel, what is filled first, words last; and what is told of words without room."""
     items = apart(panel.items, box, CLOSE)
     drawn = [shape for item in items for shape in _shapes(item, box)]
@@ -152,43 +152,49 @@ def _panel(panel: Panel, box: Box, width: float) -> tuple[list[Shape], list[str]
     field = field_of(drawn, room)
     texts, told = words(items, box, field)
     named, without_names = labelled([item for item in items if isinstance(item, Label)], box, field)
-    axes = [] if panel.bare else list(_axes(box))
-    return [*drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
+    grid, axes = ([], []) if panel.bare else _axes(box)
+    return [*grid, *drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
 
 
-def _axes(box: Box) -> Iterator[Shape]:
-    """The grid with its numbers, the zero lines, the frame, and what the axes tell."""
+def _axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
+    """The grid, on which all stands; and the zero lines, the frame with its numbers, and what the axes tell."""
     most = max(2, int((box.right - box.left) / PER_TICK_X)), max(2, int((box.bottom - box.top) / PER_TICK_Y))
+    grid: list[Shape] = []
+    axes: list[Shape] = []
     for value, text in ticks(box.across, most[0]):
         x = box.x(value)
-        yield Line(((x, box.top), (x, box.bottom)), GREY if _is_zero(value, box.across) else FAINT, 0.8)
-        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8)
+        is_zero = _is_zero(value, box.across)
+        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), GREY if is_zero else FAINT, 0.8))
+        axes.append(Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8))
         if box.across.label:
-            yield Text(x, box.bottom + 16.0, shown(text), SMALL, "middle")
+            axes.append(Text(x, box.bottom + 16.0, shown(text), SMALL, "middle"))
     for value, text in ticks(box.up, most[1]):
         y = box.y(value)
-        yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
-        yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
+        is_zero = _is_zero(value, box.up)
+        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), GREY if is_zero else FAINT, 0.8))
+        axes.append(Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end"))
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    yield Line((*corners, corners[0]), GREY, 0.8)
+    axes.append(Line((*corners, corners[0]), BLACK, 0.8))
     if box.across.label:
-        yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
+        middle = (box.left + box.right) / 2.0
+        axes.append(Text(middle, box.bottom + 34.0, shown(box.across.label), NAME, "middle"))
     if box.up.label:
-        middle = (box.top + box.bottom) / 2.0
-        yield Text(max(box.left - 64.0, 16.0), middle, shown(box.up.label), NAME, "middle", turned=True)
+        at = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
+        axes.append(Text(*at, shown(box.up.label), NAME, "middle", turned=True))
+    return grid, axes
 
 
 def _is_zero(value: float, scaling: Scaling) -> bool:
     return value == 0.0 and not scaling.logarithmic and not scaling.named
 
 
-def _shapes(item: Item, box: Box) -> Iterator[Shape]:
+def _shapes(item: Item, box: PanelBox) -> Iterator[Shape]:
     """What an item is drawn with."""
-    draw: Callable[[Any, Box], Iterator[Shape]] = DRAWN[type(item)]
+    draw: Callable[[Any, PanelBox], Iterator[Shape]] = DRAWN[type(item)]
     return draw(item, box)
 
 
-def _trace(item: Trace, box: Box) -> Iterator[Shape]:
+def _trace(item: Trace, box: PanelBox) -> Iterator[Shape]:
     own = pen(item.pen)
     for part in pieces(box.points(item.x, item.y)):
         if len(part) == 1:
@@ -198,7 +204,7 @@ def _trace(item: Trace, box: Box) -> Iterator[Shape]:
         yield Line(line, own.colour, 0.9 if item.thin else 1.5, own.dash, shown(item.name))
 
 
-def _band(item: Band, box: Box) -> Iterator[Shape]:
+def _band(item: Band, box: PanelBox) -> Iterator[Shape]:
     low, high = box.points(item.x, item.low), box.points(item.x, item.high)
     for part in pieces(np.hstack([low, high])):
         if len(part) == 1:
@@ -207,7 +213,7 @@ def _band(item: Band, box: Box) -> Iterator[Shape]:
         yield Area(tuple(map(tuple, around.tolist())), pen(item.pen).colour, 0.2, shown(item.name))
 
 
-def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
+def _strokes(item: Strokes, box: PanelBox) -> Iterator[Shape]:
     colour = GREY if item.pen is None else pen(item.pen).colour
     first, last = (box.points(*item.ends[:, k].T) for k in (0, 1))
     follows = (first[1:] == last[:-1]).all(axis=1)  # where the one before ends
@@ -218,7 +224,7 @@ def _strokes(item: Strokes, box: Box) -> Iterator[Shape]:
             yield Line(tuple(map(tuple, points.tolist())), colour, item.width)
 
 
-def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
+def _polygon(item: Polygon, box: PanelBox) -> Iterator[Shape]:
     colour = ink(item.pen)
     around = box.points(*item.corners.T)
     corners = tuple(map(tuple, thinned(around).tolist())) if len(around) > MANY else tuple(map(tuple, around.tolist()))
@@ -229,12 +235,12 @@ def _polygon(item: Polygon, box: Box) -> Iterator[Shape]:
     yield Line((*corners, corners[0]), colour, item.width, name=shown(item.name))
 
 
-def _symbol(item: Symbol, box: Box) -> Iterator[Shape]:
+def _symbol(item: Symbol, box: PanelBox) -> Iterator[Shape]:
     a, b = box.x(item.along[0]) - box.x(0.0), box.y(item.along[1]) - box.y(0.0)
     yield from _parts(SYMBOLS[item.symbol].parts, box.x(item.x), box.y(item.y), a, b, ink(item.pen), item.name)
 
 
-def _link(item: Link, box: Box) -> Iterator[Shape]:
+def _link(item: Link, box: PanelBox) -> Iterator[Shape]:
     x, y = box.x(item.x), box.y(item.y)
     a, b = box.x(item.to_x) - x, box.y(item.to_y) - y
     yield from _parts(link(item.kind, math.hypot(a, b)), x, y, a, b, ink(item.pen), item.name)
@@ -258,12 +264,12 @@ def _parts(
         name = ""  # told once
 
 
-def _label(item: Label, box: Box) -> Iterator[Shape]:
+def _label(item: Label, box: PanelBox) -> Iterator[Shape]:
     """Placed when all else is (`_panel`)."""
     yield from ()
 
 
-def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
+def _arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     colour = ink(item.pen)
     x0, y0 = box.x(item.x), box.y(item.y)
     x1, y1 = box.x(item.x + item.by_x), box.y(item.y + item.by_y)
@@ -282,24 +288,26 @@ def _arrow(item: Arrow, box: Box) -> Iterator[Shape]:
         yield Text(x1 + 5.0 * a, y1 + 5.0 * b + 4.0, shown(item.name), SMALL, "end" if a < 0.0 else "start", colour)
 
 
-def _spot(item: Spot, box: Box) -> Iterator[Shape]:
+def _spot(item: Spot, box: PanelBox) -> Iterator[Shape]:
     colour = ink(item.pen)
     yield Mark(box.x(item.x), box.y(item.y), item.shape, colour, item.filled, SPOT)
 
 
-def _words(item: Words, box: Box) -> Iterator[Shape]:
+def _words(item: Words, box: PanelBox) -> Iterator[Shape]:
     colour = ink(item.pen)
     yield Text(box.x(item.x), box.y(item.y) + 4.0, shown(item.text), NAME, "middle", colour)
 
 
-def _upright(item: Upright, box: Box) -> Iterator[Shape]:
+def _upright(item: Upright, box: PanelBox) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
-    if item.above:
-        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
+    if item.above:  # within the picture
+        half = min(0.5 * wide(shown(item.text), SMALL) + 4.0, 0.5 * (box.right + RIGHT))
+        middle = max(half, min(x, box.right + RIGHT - half))
+        yield Text(middle, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
-def _blank(item: Blank, box: Box) -> Iterator[Shape]:
+def _blank(item: Blank, box: PanelBox) -> Iterator[Shape]:
     left, right = box.x(item.low), box.x(item.high)
     yield Area(
         ((left, box.top), (right, box.top), (right, box.bottom), (left, box.bottom)), "#ffffff", 1.0, shown(item.text)
@@ -314,7 +322,7 @@ def _blank(item: Blank, box: Box) -> Iterator[Shape]:
     yield Text((left + right) / 2.0, box.top + 0.3 * height, shown(item.text), SMALL, "middle", GREY, halo=True)
 
 
-def _bars(item: Bars, box: Box) -> Iterator[Shape]:
+def _bars(item: Bars, box: PanelBox) -> Iterator[Shape]:
     own, zero = pen(item.pen), box.y(0.0)
     step = float(np.diff(item.x).min()) if len(item.x) > 1 else 1.0
     half = min(0.3 * abs(box.x(step) - box.x(0.0)), 15.0)
@@ -324,7 +332,7 @@ def _bars(item: Bars, box: Box) -> Iterator[Shape]:
             yield Area(corners, own.colour, 0.85, shown(item.name))
 
 
-def _cells(item: Cells, box: Box) -> Iterator[Shape]:
+def _cells(item: Cells, box: PanelBox) -> Iterator[Shape]:
     xs, ys = (
         box.points(item.x_edges, np.full(len(item.x_edges), box.up.low))[:, 0],
         box.points(np.full(len(item.y_edges), box.across.low), item.y_edges)[:, 1],
@@ -342,7 +350,7 @@ def _cells(item: Cells, box: Box) -> Iterator[Shape]:
                 yield Area(tuple((float(a), float(b)) for a, b in corners), shade(share), 1.0)
 
 
-DRAWN: dict[type, Callable[[Any, Box], Iterator[Shape]]] = {
+DRAWN: dict[type, Callable[[Any, PanelBox], Iterator[Shape]]] = {
     Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
     Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip

@@ -34,7 +34,7 @@ from heuncli.drawing.figure import (
     Words,
 )
 from heuncli.drawing.pens import pen
-from heuncli.drawing.room import Field, WordBox, columns_of, left_out
+from heuncli.drawing.room import WordBox, WordField, columns_of, left_out
 from heuncli.drawing.symbols import SYMBOLS, Part, link
 from heuncli.drawing.ticks import ticks
 from heuncli.drawing.words import in_turn
@@ -50,6 +50,7 @@ ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
 DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
 ASPECT = 2.0  # how much higher than wide a cell is
+APART = 3.0  # columns between upright strokes that belong together
 LABEL = 10  # columns left of a panel
 SHADES = "·░▒▓█"  # what is not known is blank
 PLAIN_SHADES = ".:*#@"
@@ -91,7 +92,7 @@ class Canvas:
         self.dots = np.zeros((rows, columns), dtype=np.int64)
         self.pens = np.full((rows, columns), NOBODY)
         self.words: dict[tuple[int, int], tuple[str, int]] = {}
-        self.room = Field(WordBox(0.0, 0.0, columns, rows), (1.0, 1.0))
+        self.room = WordField(WordBox(0.0, 0.0, columns, rows), (1.0, 1.0))
 
     def x(self, value: float) -> float:
         """The dot of a place along the axis across, from the left."""
@@ -132,9 +133,10 @@ class Canvas:
 
     def beside(self, text: str, column: int, row: int, number: int) -> bool:
         """Words beside a cell, where there is room for them; whether there is."""
-        found = self.room.beside(WordBox(column, row, column + 1, row + 1), columns_of(text), 1.0)
+        mark = WordBox(column, row, column + 1, row + 1)
+        found = self.room.beside(mark, columns_of(text) + 2, 1.0)  # with a blank at both sides
         if found is not None:
-            self._put(text, found, number)
+            self._put(text, int(found.left) + 1, int(found.top), number)
         return found is not None
 
     def at(self, text: str, column: int, row: int, number: int) -> bool:
@@ -146,23 +148,23 @@ class Canvas:
             if down or not -wide < right < 1
         )
         if found is not None:
-            self._put(text, found, number)
+            self._put(text, int(found.left), int(found.top), number)
         return found is not None
 
     def along(self, text: str, column: int) -> bool:
         """Words in one of the upper rows, at the right or left of a column; whether there is room."""
         wide = columns_of(text)
         found = self.room.best(
-            (2.0 * row, WordBox(left, row, left + wide + 1, row + 1))  # and a blank behind it
+            (2.0 * row, WordBox(left, row, left + wide + 2, row + 1))
             for row in range(min(UPPER, self.rows))
-            for left in (column + 1, column - wide - 1)
+            for left in (column, column - wide - 2)
         )
         if found is not None:
-            self._put(text, found, NOBODY)
+            self._put(text, int(found.left) + 1, int(found.top), NOBODY)
         return found is not None
 
-    def _put(self, text: str, box: WordBox, number: int) -> None:
-        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, int(box.left), int(box.top))}
+    def _put(self, text: str, column: int, row: int, number: int) -> None:
+        self.words |= {cell: (letter, number) for cell, letter in in_cells(text, column, row)}
 
     def lines(self) -> list[str]:
         """The rows as text."""
@@ -255,7 +257,7 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     for item in panel.items:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
-    told = _words(panel.items, canvas)
+    told = _spoken(panel.items, canvas)
     key, unnamed = _labels([item for item in panel.items if isinstance(item, Label) and item.letter], canvas)
     told += unnamed
     if look.letters and look.braille:
@@ -276,7 +278,7 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     return lines + _below(panel, canvas) + key, told
 
 
-def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
+def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
     """The words of spots and vertical marks where they find room; what is told of the others."""
     told: list[str] = []
     for item in in_turn(items):
@@ -285,7 +287,8 @@ def _words(items: Sequence[Item], canvas: Canvas) -> list[str]:
             has_room = canvas.along(shown(item.text), column)
         else:
             row = round(canvas.y(item.y)) // canvas.per_y
-            has_room = canvas.beside(shown(item.text), column, row, NOBODY if item.pen is None else item.pen)
+            number = NOBODY if item.pen is None else item.pen
+            has_room = canvas.beside(shown(item.text), column, row, number)
         if not has_room:
             told.append(item.note or item.text)
     return told
@@ -367,8 +370,9 @@ def _placed(places: Mapping[int, str], canvas: Canvas) -> str:
 def _course(canvas: Canvas, x: Array, y: Array, number: int, every: int = 1) -> None:
     """The dots of a line through points."""
     points = [(canvas.x(a), canvas.y(b)) for a, b in zip(x.tolist(), y.tolist(), strict=True)]
-    if len(points) == 1 and math.isfinite(sum(points[0])):
-        canvas.dot(*points[0], number)
+    for x0, y0 in points if len(points) == 1 or not np.isfinite(y).all() else ():  # some may stand alone
+        if math.isfinite(x0 + y0):
+            canvas.dot(x0, y0, number)
     for (x0, y0), (x1, y1) in pairwise(points):
         if math.isfinite(x0 + y0 + x1 + y1):
             canvas.line(x0, y0, x1, y1, number, every)
@@ -384,7 +388,14 @@ def _band(item: Band, canvas: Canvas) -> None:
 
 
 def _strokes(item: Strokes, canvas: Canvas) -> None:
+    """Of ordinates, which stand upright, only so many that what lies between them can be seen."""
+    last = -math.inf
     for (x0, y0), (x1, y1) in item.ends.tolist():
+        if x0 == x1:
+            column = canvas.x(x0) / canvas.per_x
+            if abs(column - last) < APART:
+                continue
+            last = column
         canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), NOBODY if item.pen is None else item.pen)
 
 
@@ -409,7 +420,7 @@ def _spot(item: Spot, canvas: Canvas) -> None:
 
 def _word(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    canvas.write(shown(item.text), column - len(shown(item.text)) // 2, row)
+    canvas.write(shown(item.text), column - columns_of(shown(item.text)) // 2, row)
 
 
 def _symbol(item: Symbol, canvas: Canvas) -> None:

@@ -7,7 +7,6 @@ passes. Where words or marks stand there is no room at any price.
 from __future__ import annotations
 
 import math
-import unicodedata
 from collections.abc import Iterable, Iterator
 
 import numpy as np
@@ -17,7 +16,7 @@ from heuncli.results import Array
 
 LINES = 4  # how many lines of text away from its place words are looked for room
 TOUCH = 1e-6  # of rounding
-PER_LINE = 4.0  # what each of them costs, in cells of a curve
+PER_LINE = 7.0  # what each of them costs, in cells of a curve
 
 
 class WordBox(NamedTuple):
@@ -43,7 +42,7 @@ class WordBox(NamedTuple):
         )  # fmt: skip
 
 
-class Field:
+class WordField:
     """The cells of a rectangle; fine: the size of one, (across, down)."""
 
     def __init__(self, box: WordBox, fine: tuple[float, float]) -> None:
@@ -88,7 +87,7 @@ class Field:
         return self.best(self._around(mark, width, height))
 
     def _around(self, mark: WordBox, width: float, height: float) -> Iterator[tuple[float, WordBox]]:
-        """Boxes about a mark with what each costs: at its right and left, then above and below, farther and farther."""
+        """Boxes about a mark with what each costs: above, below, at its right and left, then farther and farther."""
         middle = 0.5 * (mark.top + mark.bottom - height)
         centred = 0.5 * (mark.left + mark.right - width)
         centred = max(min(centred, self.box.right - width), self.box.left)
@@ -115,6 +114,8 @@ def columns_of(text: str) -> int:
     """How many cells a text takes in a terminal: two for a wide letter, none for one that stands over another."""
     if text.isascii():
         return len(text)
+    import unicodedata  # few words have other letters
+
     return sum(0 if unicodedata.combining(c) else 2 if unicodedata.east_asian_width(c) in "WF" else 1 for c in text)
 
 

@@ -12,7 +12,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
 
-class Box(NamedTuple):
+class PanelBox(NamedTuple):
     """The field of a panel in pixels, and its scales."""
 
     left: float

@@ -19,8 +19,12 @@ def ticks(scaling: Scaling, most: int) -> list[tuple[float, str]]:
     if scaling.logarithmic:
         return _decades(scaling.low, scaling.high, most)
     span = scaling.high - scaling.low
-    step = _step(span / max(most, 1), turning="[deg]" in scaling.label)
+    turning = "[deg]" in scaling.label
+    step = _step(span / max(most, 1), turning=turning)
     first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
+    if last <= first:  # one number does not tell how long the axis is
+        step = _step(span / 5.0, turning=turning)
+        first, last = math.ceil(scaling.low / step - 1e-9), math.floor(scaling.high / step + 1e-9)
     if max(abs(first), abs(last)) > MANY:
         return []
     values = [k * step for k in range(first, last + 1)]

@@ -9,8 +9,8 @@ import numpy as np
 from heuncli.drawing.figure import Item, Spot, Upright
 from heuncli.drawing.pens import BLACK, GREY, pen
 from heuncli.drawing.picture import Line, Mark, Shape, Text
-from heuncli.drawing.room import Field, WordBox, columns_of
-from heuncli.drawing.scales import Box
+from heuncli.drawing.room import WordBox, WordField, columns_of
+from heuncli.drawing.scales import PanelBox
 from heuncli.foreign_text import shown
 
 SMALL = 11.0  # the size of letters
@@ -22,7 +22,7 @@ NEAR = 2.0  # from a mark to its words
 LEAST_WIDTH = 1.0  # of an unnamed line that is no hatch
 
 
-def words(items: Sequence[Item], box: Box, field: Field) -> tuple[list[Shape], list[str]]:
+def words(items: Sequence[Item], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
     """The words of spots and vertical marks, and what is told of those that find no room in the field."""
     texts: list[Shape] = []
     told: list[str] = []
@@ -46,9 +46,9 @@ def wide(text: str, size: float) -> float:
     return WIDE * size * columns_of(text)
 
 
-def field_of(drawn: Sequence[Shape], room: WordBox) -> Field:
+def field_of(drawn: Sequence[Shape], room: WordBox) -> WordField:
     """The room of a panel with its curves, marks and words: what stands there."""
-    field = Field(room, (FINE, FINE))
+    field = WordField(room, (FINE, FINE))
     for shape in drawn:
         if isinstance(shape, Line):
             if shape.name or shape.width >= LEAST_WIDTH:
@@ -72,7 +72,7 @@ def _of_text(text: Text) -> WordBox:
     return WordBox(left, top, left + width, top + HIGH * text.size)
 
 
-def _spot(item: Spot, box: Box, field: Field) -> Text | None:
+def _spot(item: Spot, box: PanelBox, field: WordField) -> Text | None:
     """The words beside a mark."""
     text = shown(item.text)
     mark = Mark(box.x(item.x), box.y(item.y), item.shape, BLACK, item.filled, SPOT + NEAR)
@@ -83,7 +83,7 @@ def _spot(item: Spot, box: Box, field: Field) -> Text | None:
     return Text(found.left, found.top + BASE * SMALL, text, SMALL, colour=colour, halo=True)
 
 
-def _upright(item: Upright, box: Box, field: Field) -> Text | None:
+def _upright(item: Upright, box: PanelBox, field: WordField) -> Text | None:
     """The words along a vertical mark, read from below: at its left or right, at its upper end or its lower."""
     text, x = shown(item.text), box.x(item.x)
     long, high = wide(text, SMALL), HIGH * SMALL
@@ -98,7 +98,7 @@ def _upright(item: Upright, box: Box, field: Field) -> Text | None:
     return Text(found.left + BASE * SMALL, found.bottom, text, SMALL, colour=GREY, turned=True, halo=True)
 
 
-def apart(items: Sequence[Item], box: Box, least: float) -> list[Item]:
+def apart(items: Sequence[Item], box: PanelBox, least: float) -> list[Item]:
     """The items without those vertical marks that have no words and stand closer than so many pixels to another."""
     last, kept = -np.inf, []
     for item in items:

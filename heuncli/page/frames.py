@@ -1,11 +1,13 @@
 """The instants that a page holds: those asked for, and more between them where the motion would look torn.
 
-Nothing is shown beyond the horizon. Blows and jumps have both of their sides.
+Nothing is shown beyond the horizon. Blows and jumps have both of their sides, and where a load is largest there is a
+frame, too.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,7 +25,8 @@ LEAST = 120  # frames of a motion
 TURNED = 0.3  # rad: how far a body may turn from one frame to the next
 MOST = 600  # frames, where nobody says how many
 MOST_JUMPS = 60  # whose sides are frames: knots of tables count as jumps, too
-MOST_BYTES = 12_000_000  # of the numbers of a page, before they are text
+SAME = 1e-3  # of the way from one asked instant to the next: a summit is missed by the square of it
+MOST_BYTES = 24_000_000  # of the numbers of a page, before they are text
 
 
 class PageFrames(NamedTuple):
@@ -33,8 +36,8 @@ class PageFrames(NamedTuple):
     told: tuple[str, ...]
 
 
-def frames_of(study: Study, most: int = MOST) -> PageFrames:
-    """The frames of a page, at most so many."""
+def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
+    """The frames of a page, at most so many; peaks: instants that are among them if there is room."""
     results = study.results
     if study.of_one_instant:
         return PageFrames(results.time, ())
@@ -43,16 +46,21 @@ def frames_of(study: Study, most: int = MOST) -> PageFrames:
     if len(asked) < 2:
         return PageFrames(results.time[:1], ("Nothing is claimed of this motion beyond its start.",))
     limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
-    if len(asked) > limit:
-        some = np.linspace(0, len(asked) - 1, limit).round().astype(np.intp)
-        told = f"The run was asked for at {len(asked)} instants; {limit} of them are in this page."
-        return PageFrames(asked[some], (told,))
-    found = _with_sides(study, _filled(study, asked, limit), limit)
+    beside = _beside(study, peaks, asked, limit - len(asked) if len(asked) < limit else limit // 3)
+    room = limit - len(beside)
+    told = []
+    if len(asked) > room:
+        told.append(f"The run was asked for at {len(asked)} instants; {room} of them are in this page.")
+        even = asked[np.linspace(0, len(asked) - 1, room).round().astype(np.intp)]
+    else:
+        even = _filled(study, asked, room)
+    found = np.asarray(distinct(np.concatenate([even, beside])))
     turned = float(turned_between(study.setup, study.history, found).max(initial=0.0))
     if turned > math.pi / 2.0:
-        told = f"Between two frames a body turns up to {math.degrees(turned):.0f}°: only the frames show where it is."
-        return PageFrames(found, (told,))
-    return PageFrames(found, ())
+        told.append(
+            f"Between two frames a body turns up to {math.degrees(turned):.0f}°: only the frames show where it is."
+        )
+    return PageFrames(found, tuple(told))
 
 
 def results_at(study: Study, times: Array) -> Results:
@@ -101,15 +109,29 @@ def _parts(wanted: Array, most: int) -> Indices:
     return np.asarray(1 + more.astype(np.intp))
 
 
-def _with_sides(study: Study, times: Array, limit: int) -> Array:
-    """The instants with both sides of blows and jumps, as far as there is room for them."""
+def _beside(study: Study, peaks: Array, asked: Array, most: int) -> Array:
+    """Instants beside those asked for, at most so many: both sides of blows, then of jumps, then peaks."""
     blows = [float(blow["time"]) for blow in study.results.impulses]
-    jumps = study.history.jumps if len(study.history.jumps) <= MOST_JUMPS else blows
-    inside = distinct(np.array([t for t in (*jumps, *blows) if times[0] < t <= times[-1]]))
-    if not len(inside) or len(times) + 2 * len(inside) > limit:
-        return times
-    before, after = limits_of(inside)
-    return np.asarray(distinct(np.concatenate([times, before, after])))
+    jumps = study.history.jumps if len(study.history.jumps) <= MOST_JUMPS else []
+    found: Array = np.zeros(0)
+    for kind in (_sides(blows, asked), _sides(jumps, asked), _apart(peaks, asked)):
+        more = np.asarray(distinct(np.concatenate([found, kind])))
+        found = more if len(more) <= most else found
+    return found
+
+
+def _sides(instants: Sequence[float] | Array, asked: Array) -> Array:
+    """The last instants before some and the first after them, within those asked for."""
+    inside = distinct(np.array([t for t in instants if asked[0] < t <= asked[-1]], dtype=np.float64))
+    return np.concatenate(limits_of(inside)) if len(inside) else inside
+
+
+def _apart(peaks: Array, asked: Array) -> Array:
+    """Peaks that are none of the asked instants, and do not stand beside one that shows the same."""
+    inside = peaks[(peaks > asked[0]) & (peaks < asked[-1])]
+    after = np.searchsorted(asked, inside)
+    near = np.minimum(inside - asked[after - 1], asked[after] - inside)
+    return np.asarray(inside[near > SAME * (asked[after] - asked[after - 1])])
 
 
 def _bytes_of_a_frame(study: Study) -> int:

@@ -14,6 +14,7 @@ from heuncli.page.geometry import scene_of
 from heuncli.page.inlined import whole_page
 from heuncli.page.number_rows import blocks_of, blow_tables
 from heuncli.page.packing import packed
+from heuncli.page.peaks import peak_times
 from heuncli.records import replace
 from heuncli.report.digits import Certainty, certainty
 from heuncli.report.heading import heading
@@ -27,7 +28,7 @@ from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
 MOST_BLOWS = 12  # whose numbers are listed
-TELLING = ("unseen", "stiff", "rest", "split", "status", "warning")  # lines of a heading that are told at once
+TELLING = ("stiff", "rest", "split", "status", "warning")  # lines of a heading that are told at once
 
 
 def moving_page(study: Study, units: Units, most: int = MOST) -> str:
@@ -37,11 +38,11 @@ def moving_page(study: Study, units: Units, most: int = MOST) -> str:
 
 def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     """All that a page knows: plain data, arrays packed."""
-    frames = frames_of(study, most)
     own, spec = study.results, study.spec
-    results = results_at(study, frames.times)
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
+    frames = frames_of(study, peak_times(study, labels, certain), most)
+    results = results_at(study, frames.times)
     horizon = own.accuracy.get("horizon")
     return {
         "title": shown(own.title),

@@ -9,20 +9,21 @@ the corner moves, too, and is where it stands at that instant.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Sequence
 from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
 
 from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached
-from heuncli.kinetostatics.stretch import DEGREE, SIDES, Stretch, laid
+from heuncli.kinetostatics.stretch import DEGREE, SIDES, TO_COEFFICIENTS, Stretch, chebyshev, laid
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import instants
+from heuncli.pictures.summits import bounds_of, halved
 from heuncli.records import record, replace
-from heuncli.report.digits import Certainty, certainty, largest
+from heuncli.report.digits import Certainty, certainty
 from heuncli.report.labels import labels_of
-from heuncli.results import Array, Block, Results
+from heuncli.results import Array, Block, Mask, Results
 from heuncli.results_schema import RESULTANTS
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import Setup
@@ -33,7 +34,7 @@ from heuncli.study.search.stretches import at_one_instant, stretch_named
 
 SECTIONS = frozenset({"sections"})
 ALONG, LEAST = 240, 8  # places along a bar, three pixels apart; and between two corners at least
-SEEN = 0.002  # of the span of a quantity: a third of a pixel, beyond which no higher summit is looked for in time
+HALVINGS, MOST = 4, 16_000  # of the steps between instants, and how many of these at most
 SAME = 1e-6  # of the larger of two magnitudes: what is as large as the other in a picture
 UNITS = {"N": "N", "Q1": "N", "Q2": "N", "T": "N·m", "M1": "N·m", "M2": "N·m"}
 OF_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}
@@ -101,6 +102,14 @@ class Edges(NamedTuple):
         moves = np.ptp(s, axis=0) > 0.0
         return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
 
+    def passes(self, places: Array, near: float) -> Mask:
+        """Between which neighbouring instants a load passes places (k,), or comes so near to them, (n_t - 1, k)."""
+        found = np.zeros((len(self.s) - 1, len(places)), dtype=bool)
+        for s in self.s.T:
+            low, high = np.minimum(s[:-1], s[1:]), np.maximum(s[:-1], s[1:])
+            found |= (low[:, None] - near <= places) & (places <= high[:, None] + near)
+        return found
+
     def pass_over(self, places: Array, side: Array, low: Array, high: Array) -> None:
         """Widen bounds (6, k) at places (k,), in place, by what they are when a load stands there, just beside it."""
         a, b = self.s[:-1], self.s[1:]
@@ -133,6 +142,11 @@ class WholeBar:
         return stretch_named(self.setup, self.name)
 
     @property
+    def near(self) -> float:
+        """How far apart corners along it are told apart [m]."""
+        return 4.0 * self.stretch.asked.near
+
+    @property
     def length(self) -> float:
         """From its first point to its last [m]."""
         s = self.stretch.asked.s
@@ -163,7 +177,7 @@ class WholeBar:
         """What stands along it, joints, loads and point masses, by its place [m], ascending."""
         stretch, n = self.stretch, self.stretch.asked.n
         assert stretch.asked.form is not None
-        near, first = 4.0 * stretch.asked.near, float(stretch.height(np.array(0.0)))
+        near, first = self.near, float(stretch.height(np.array(0.0)))
         masses = stretch.corners[stretch.asked.form.masses_in_plane(n, stretch.corners)] - first
         acting = [
             (float(point @ n) - first, what) for what, point in attached(self.setup.scene.mechanism, stretch.body)
@@ -203,42 +217,30 @@ class WholeBar:
     def at(self, at: float) -> dict[str, AlongBar]:
         """All quantities along the bar at an instant."""
         nodes = self.block(self.setup.cuts[0], at)
-        pieces = nodes["s"].reshape(-1, DEGREE + 1)
-        s, side = places(np.append(pieces[:, 0], pieces[-1, -1]), 4.0 * self.stretch.asked.near)
+        s, side = places(corners_of(nodes["s"]), self.near)
         told = self.block(laid(self.stretch.asked, s, side), at)
         found = {}
         for name in RESULTANTS:
-            values = told[name]
+            both = [_extreme(s, side * told[name], side, at) for side in (-1.0, 1.0)]
             if np.isfinite(nodes[name]).all():
-                both = [
-                    Extreme(one.value, one.place.s, at) for one in at_one_instant(self.stretch, nodes["s"], nodes[name])
-                ]
-            else:
-                both = [_extreme(s, side * values, side, at) for side in (-1.0, 1.0)]
-            found[name] = AlongBar(at, s, values, *both)
+                summits = at_one_instant(self.stretch, nodes["s"], nodes[name])
+                both = [Extreme(one.value, one.place.s, at) for one in summits]
+            found[name] = AlongBar(at, s, told[name], *both)
         return found
 
     def reaches(self) -> dict[str, Reach]:
         """All quantities along the bar over the run, up to its horizon."""
         times = instants(self.study)
-        whole = self._searched(times)
-        instants_of = [one.at for both in whole.values() for one in both]
-        lines = {at: self.at(at) for at in extremes.distinct(np.array(instants_of)).tolist()}
-        moving = Edges.of(self.study.reports_at(times, SECTIONS, self.setup).sections[self.name])
-        corners = self.stretch.corners - float(self.stretch.height(np.array(0.0)))
-        turns = np.array([] if moving is None else [f(moving.s) for f in (np.min, np.max)])
-        s, side = places(np.sort(np.append(corners, turns)), 4.0 * self.stretch.asked.near, [
-            one.s for both in whole.values() for one in both
-        ])  # fmt: skip
-        low, high = self._bounds(times, laid(self.stretch.asked, s, side), whole)
-        if moving is not None:
-            moving.pass_over(s, side, low, high)
+        whole = self._searched()
+        marked = [one for both in whole.values() for one in both]
+        lines = {at: self.at(at) for at in extremes.distinct(np.array([one.at for one in marked])).tolist()}
+        s, low, high = self._bounds(times, [one.s for one in marked])
         return {
             name: Reach(s, low[i], high[i], *both, lines[both[0].at][name], lines[both[1].at][name])
             for i, (name, both) in enumerate(whole.items())
         }
 
-    def _searched(self, times: Array) -> dict[str, tuple[Extreme, Extreme]]:
+    def _searched(self) -> dict[str, tuple[Extreme, Extreme]]:
         """The lowest and the highest of each quantity along the bar and over the run, searched between all of it."""
         errors = np.array([self.error(name) for name in RESULTANTS])
 
@@ -247,6 +249,8 @@ class WholeBar:
 
         searched = ColumnSearch(no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
         sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
+        times, horizon = self.study.search_times, self.study.results.accuracy.get("horizon")
+        times = times if horizon is None else times[times < horizon]
         found = sampled.placed(extremes.search(sampled.columns, times, sampled.groups, errors=errors))
         rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)
         return {
@@ -254,22 +258,50 @@ class WholeBar:
             for name, (a, a_at, b, b_at, (low, high)) in zip(RESULTANTS, rows, strict=True)
         }
 
-    def _bounds(self, times: Array, cuts: Cuts, whole: Mapping[str, tuple[Extreme, Extreme]]) -> tuple[Array, Array]:
-        """The lowest and the highest of each quantity at each of some cuts, (6, k) each."""
-        spans = [largest(np.array([both[0].value, both[1].value])) for both in whole.values()]
-        errors = np.maximum([self.error(name) for name in RESULTANTS], SEEN / extremes.GOOD_ENOUGH * np.array(spans))
+    def _bounds(self, times: Array, more: Sequence[float]) -> tuple[Array, Array, Array]:
+        """Places along the bar (k,), some more among them, and the lowest and the highest of all quantities (6, k)."""
+        for _ in range(HALVINGS):
+            nodes = self.study.reports_at(times, SECTIONS, self.setup).sections[self.name]
+            jumps = extremes.sides_of_jumps(times)
+            moving = Edges.of(nodes)
+            turns = np.array([] if moving is None else [f(moving.s) for f in (np.min, np.max)])
+            corners = self.stretch.corners - float(self.stretch.height(np.array(0.0)))
+            s, side = places(np.sort(np.append(corners, turns)), self.near, more)
+            smooth = np.broadcast_to(~jumps[:, None], (len(jumps), len(s)))
+            if moving is None:
+                to_places = between_nodes(nodes["s"], s, side)
+                values = {name: nodes[name] @ to_places for name in RESULTANTS}
+            else:
+                cuts = laid(self.stretch.asked, s, side)
+                values = self.study.reports_at(times, SECTIONS, replace(self.setup, cuts=(cuts,))).sections[self.name]
+                smooth = smooth & ~moving.passes(s, self.near)
+            found = [bounds_of(times, values[name], smooth, self.error(name)) for name in RESULTANTS]
+            if all(own.fine for own in found) or len(times) > MOST:
+                break
+            times = halved(times, jumps)
+        low, high = np.stack([own.low for own in found]), np.stack([own.high for own in found])
+        if moving is not None:
+            moving.pass_over(s, side, low, high)
+        return s, low, high
 
-        def columns(results: Results) -> Array:
-            own = results.sections[self.name]
-            return np.concatenate([own[name] for name in RESULTANTS], axis=1)
 
-        count = len(cuts.side)
-        groups = [[column] for column in range(len(RESULTANTS) * count)]
-        each = np.repeat(errors, count)
-        searched = ColumnSearch(columns, groups, each, np.zeros(len(each), dtype=bool))
-        sampled = StudyColumns(self.study, searched, SECTIONS, replace(self.setup, cuts=(cuts,)))
-        found = extremes.search(sampled.columns, times, groups, errors=each)
-        return found.low.reshape(-1, count), found.high.reshape(-1, count)
+def corners_of(nodes: Array) -> Array:
+    """Where along a bar the pieces of a stretch with these nodes (9 m,) begin, and the last ends, (m + 1,)."""
+    pieces = nodes.reshape(-1, DEGREE + 1)
+    return np.append(pieces[:, 0], pieces[-1, -1])
+
+
+def between_nodes(nodes: Array, s: Array, side: Array) -> Array:
+    """What leads from values at the nodes (9 m,) of a stretch to those at places (k,) on their sides: (9 m, k)."""
+    corners = corners_of(nodes)
+    first, last = (np.searchsorted(corners[1:-1], s, side=way) for way in ("right", "left"))
+    piece = np.where(side == BEFORE, last, first)
+    a, b = corners[piece], corners[piece + 1]
+    rows = chebyshev((2.0 * s - a - b) / (b - a)) @ TO_COEFFICIENTS
+    found = np.zeros((len(nodes), len(s)))
+    for k in range(DEGREE + 1):
+        found[(DEGREE + 1) * piece + k, np.arange(len(s))] = rows[:, k]
+    return found
 
 
 def places(corners: Array, near: float, more: Iterable[float] = ()) -> tuple[Array, Array]:

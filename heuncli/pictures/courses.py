@@ -11,9 +11,8 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.results_paths import find
-from heuncli.study.ask.curves import numbers_at
-from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak, report_of
+from heuncli.study.ask import curves
+from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, Peak, peak, several
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
 from heuncli.variants.stated import error_of, unit_of
@@ -31,7 +30,7 @@ class Pictured:
     study: Study
 
 
-class Course(NamedTuple):
+class NumberCourse(NamedTuple):
     """A number over some instants (n,): its path, its SI unit, its stated error, its lowest and highest."""
 
     path: str
@@ -43,16 +42,16 @@ class Course(NamedTuple):
     high: Peak
 
 
-def instants(study: Study) -> Array:
-    """The instants of curves, (n,) ascending, up to the horizon."""
+def instants(study: Study, most: int = MOST) -> Array:
+    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for."""
     results = study.results
     times = results.time
     if study.of_one_instant:
         return times
     looked_at = study.search_times
-    if len(looked_at) > MOST:
+    if len(looked_at) > most:
         jumps = np.flatnonzero(sides_of_jumps(looked_at))
-        some = np.linspace(0, len(looked_at) - 1, MOST).round().astype(np.intp)
+        some = np.linspace(0, len(looked_at) - 1, most).round().astype(np.intp)
         looked_at = looked_at[distinct(np.concatenate([some, jumps, jumps + 1]))]
     even = np.linspace(times[0], times[-1], ENOUGH)
     found = distinct(np.concatenate([times, looked_at, even]))
@@ -60,34 +59,39 @@ def instants(study: Study) -> Array:
     return np.asarray(found if horizon is None else found[found < horizon])
 
 
-def jumps_of(course: Course) -> Array:
+def jumps_of(course: NumberCourse) -> Array:
     """The instants at which a course jumps by what is seen: its values on the two sides of one differ."""
     step = np.abs(np.diff(course.values))
     seen = step > JUMP * (course.high.value - course.low.value)
     return np.asarray(course.times[:-1][sides_of_jumps(course.times) & seen])
 
 
-def course_of(study: Study, path: str, times: Array) -> Course:
+def course_of(study: Study, path: str, times: Array) -> NumberCourse:
     """The course of a number, of a vector its magnitude. Raises NotOneNumber, SpecError [unknown-path]."""
-    numbers = study.numbers(path)
-    if not numbers.timed:
-        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+    require_one_number(study, path)
     low, high = (peak(study, path, how) for how in ("min", "max"))
     values = values_at(study, path, times)
     error = error_of(MeasureRequest("abs", path), high, study)
-    return Course(path, unit_of(path, study.spec), times, values, error, low, high)
+    return NumberCourse(path, unit_of(path, study.spec), times, values, error, low, high)
+
+
+def require_one_number(study: Study, path: str) -> None:
+    """Raise NotOneNumber for what has no instants, and for what is no one number or vector at each of them."""
+    numbers = study.numbers(path)
+    if not numbers.timed:
+        raise NotOneNumber(f"{path} has no instants to be drawn over", f"such as heun run SPEC --measure {path}")
+    if numbers.axes and not (numbers.of_vectors and len(numbers.axes) == 1):
+        raise several(path, numbers)
 
 
 def values_at(study: Study, path: str, times: Array) -> Array:
     """The number at a path at some instants, (n,); of a vector its magnitude."""
-    if not study.numbers(path).of_vectors:
-        return numbers_at(study, path, times)
-    parts = [numbers_at(study, f"{path}.{axis}", times) for axis in "xyz"]
-    return np.asarray(np.sqrt(sum(part * part for part in parts)))
+    values = curves.values_at(study, path, times)
+    if study.numbers(path).of_vectors:
+        return np.asarray(np.sqrt(np.einsum("nk,nk->n", values, values)))
+    return values.reshape(len(times))
 
 
 def vectors_at(study: Study, path: str, times: Array) -> Array:
-    """The vectors at a path at some instants of the run, (n, 3), ascending."""
-    wanted, most = report_of(path) or frozenset(), study.instants_at_once
-    parts = (times[i : i + most] for i in range(0, len(times), most))
-    return np.concatenate([find(study.reports_at(some, wanted), path).values for some in parts])
+    """The vectors at a path at some instants of the run, (n, 3)."""
+    return curves.values_at(study, path, times)

@@ -18,7 +18,7 @@ from heuncli.results import Array, Mask
 HIGH, LOW = 150.0, 56.0  # pixels of a panel, and of one in which all is open
 ORDINATES = 60  # of a hatch along a bar
 FREE = 0.011  # of a bar's length: how far from a sign ordinates are
-LOBE = 0.05  # of a bar's length, and of the largest value: what is less has no sign written in it
+WIDE, HIGH_ENOUGH = 0.05, 0.15  # of a bar's length, of the largest value: what is less has no sign written in it
 VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
 TICKS = 4  # of an axis that is turned over
 SPARE = 0.22  # of a panel's height, beyond what is drawn: room for the words at extremes
@@ -150,7 +150,7 @@ def _signs(s: Array, values: Array, up: float) -> Iterator[Words]:
         own = (s >= a) & (s <= b)
         x, height = s[own], np.abs(known[own])
         steps = np.diff(x) * 0.5 * (height[1:] + height[:-1])
-        if b - a < LOBE * (s[-1] - s[0]) or height.max() < LOBE * most or not steps.sum() > 0.0:
+        if b - a < WIDE * (s[-1] - s[0]) or height.max() < HIGH_ENOUGH * most or not steps.sum() > 0.0:
             continue
         middle = float(np.sum(steps * 0.5 * (x[1:] + x[:-1])) / steps.sum())
         value = float(np.interp(middle, s, known))
@@ -172,7 +172,7 @@ def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
     reach = drawn.reaches.get(quantity)
     steady = high.value - low.value <= error
     for one in (high,) if steady else (high, low):
-        if not abs(one.value) > error:
+        if not abs(one.value) > max(error, VISIBLE * drawn.size(quantity)):
             continue
         (value,) = write([to.value * one.value], how)
         line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest

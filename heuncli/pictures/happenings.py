@@ -9,13 +9,13 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.drawing.figure import Upright
 from heuncli.drawing.ticks import short
-from heuncli.pictures.courses import Course, Pictured, jumps_of
+from heuncli.pictures.courses import NumberCourse, Pictured, jumps_of
 from heuncli.results import Array, Results
 
 OFTEN = 5  # times
 
 
-def marks_of(sources: Sequence[Pictured], courses: Sequence[Course]) -> tuple[list[Upright], list[str]]:
+def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tuple[list[Upright], list[str]]:
     """The marks, ascending, each instant once, and notes; of several runs what happens in any of them.
 
     What happens again and again has its words where it does so first.

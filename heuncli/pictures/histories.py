@@ -10,9 +10,18 @@ import numpy as np
 from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Course, Pictured, course_of, instants, values_at
+from heuncli.pictures.courses import (
+    NumberCourse,
+    Pictured,
+    course_of,
+    instants,
+    jumps_of,
+    require_one_number,
+    values_at,
+)
 from heuncli.pictures.happenings import instant, marks_of
-from heuncli.pictures.measurements import Measured, seen
+from heuncli.pictures.measured_points import MeasuredPoints, seen
+from heuncli.pictures.thinning import seen_places
 from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array
@@ -20,10 +29,12 @@ from heuncli.study.ask.measure import Peak
 from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
-VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
+VISIBLE = 0.5  # pixels: half of a band, below which that of an error is not seen
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
 STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
+OF_PATHS = 480.0  # pixels at most, of the path of a point
+MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
 ALL_OPEN = "open: the laws of rigid bodies do not give this number"
 # what is measured in a unit, as axes tell it
@@ -34,14 +45,14 @@ QUANTITIES = {
 }  # fmt: skip
 
 
-class Drawn(NamedTuple):
+class PanelCourse(NamedTuple):
     """A course in a panel: its name in the legend, its pen, its run, and over what it is drawn (n,), in SI."""
 
     name: str
     pen: int
     source: Pictured
     x: Array
-    course: Course
+    course: NumberCourse
 
 
 class Across(NamedTuple):
@@ -57,26 +68,28 @@ def history(
     paths: Sequence[str],
     units: Units,
     over: str | None = None,
-    measured: Sequence[Measured] = (),
+    measured: Sequence[MeasuredPoints] = (),
 ) -> Figure:
     """The figure of some paths, of one run or of several over each other; over: the path along the axis across."""
     drawn = list(_drawn(sources, paths, over))
     across = Across(over, *(("s", 1.0) if over is None else units.of(unit_of(over, sources[0].study.spec))))
-    groups: dict[str, list[Drawn]] = {}
+    groups: dict[str, list[PanelCourse]] = {}
     for each in drawn:
         groups.setdefault(each.course.unit, []).append(each)
     x = _axis_across(sources, drawn, measured, across)
     marks, notes = ([], []) if over is not None else marks_of(sources, [each.course for each in drawn])
-    height = HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
+    # a length over a length is the path of a point: a circle is to be seen as one
+    equal = over is not None and list(groups) == ["m"] and unit_of(over, sources[0].study.spec) == "m"
+    height = OF_PATHS if equal else HEIGHTS[min(len(groups), len(HEIGHTS)) - 1]
     panels: list[Panel] = []
     for unit, own in groups.items():
         here = [(len(drawn) + k, each) for k, each in enumerate(measured) if each.unit == unit]
         y = _axis_up(unit, own, [each for _, each in here], units)
         size = units.of(unit)[1]
         words = marks if not panels else [Upright(mark.x, "") for mark in marks]
-        items = [*words, *_blanks(sources, own, x, across), *_curves(own, y, size, across)]
-        items += [item for pen, each in here for item in seen(each, pen, across.size, size)]
-        panels.append(Panel(x._replace(label=""), y, tuple(items), height))
+        points = [item for pen, each in here for item in seen(each, pen, across.size, size)]
+        items = [*words, *_blanks(sources, own, x, across), *points, *_curves(own, y, size, across, height)]
+        panels.append(Panel(x._replace(label=""), y, tuple(items), height, equal))
     panels[-1] = panels[-1]._replace(x=x)
     return Figure(
         " · ".join(dict.fromkeys(source.study.results.title for source in sources)),
@@ -88,20 +101,32 @@ def history(
     )
 
 
-def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) -> Iterator[Drawn]:
+def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) -> Iterator[PanelCourse]:
     """The courses, each with its pen."""
     number = 0
     for source in sources:
-        times = instants(source.study)
+        times = instants(source.study, MOST_TIMES if over is None else MOST_OVER)
+        for path in (*paths, *([] if over is None else [over])):
+            require_one_number(source.study, path)
         x = times if over is None else values_at(source.study, over, times)
         for path in dict.fromkeys(paths):
             name = f"{source.name}: {path}" if source.name else path
-            yield Drawn(name, number, source, x, course_of(source.study, path, times))
+            course = course_of(source.study, path, times)
+            if over is None:
+                course = _thinned(course)
+            yield PanelCourse(name, number, source, course.times if over is None else x, course)
             number += 1
 
 
+def _thinned(course: NumberCourse) -> NumberCourse:
+    """A course over time with as many points as are seen, both sides of its jumps among them."""
+    jumps = np.searchsorted(course.times, jumps_of(course))
+    kept = np.unique(np.concatenate([seen_places(course.values), jumps, jumps + 1]))
+    return course._replace(times=course.times[kept], values=course.values[kept])
+
+
 def _axis_across(
-    sources: Sequence[Pictured], drawn: Sequence[Drawn], measured: Sequence[Measured], across: Across
+    sources: Sequence[Pictured], drawn: Sequence[PanelCourse], measured: Sequence[MeasuredPoints], across: Across
 ) -> Scaling:
     """The axis across all panels; that of time goes on beyond horizons, to the end of the longest run."""
     values = [each.x for each in drawn] + [each.x for each in measured]
@@ -114,7 +139,7 @@ def _axis_across(
     return Scaling(label, *ends(low, high, spare=0.0 if across.over is None else 0.04))
 
 
-def _axis_up(unit: str, drawn: Sequence[Drawn], measured: Sequence[Measured], units: Units) -> Scaling:
+def _axis_up(unit: str, drawn: Sequence[PanelCourse], measured: Sequence[MeasuredPoints], units: Units) -> Scaling:
     """The axis of a panel: around what is drawn, with zero where that is near."""
     shown, size = units.of(unit)
     label = f"{QUANTITIES.get(unit, '')} [{'-' if shown in ('', '1') else shown}]".strip()
@@ -129,7 +154,7 @@ def _axis_up(unit: str, drawn: Sequence[Drawn], measured: Sequence[Measured], un
     return Scaling(label, low, high)
 
 
-def _all_open(drawn: Sequence[Drawn]) -> bool:
+def _all_open(drawn: Sequence[PanelCourse]) -> bool:
     """Whether there is nothing to draw."""
     return all(np.isnan(each.course.values).all() for each in drawn)
 
@@ -145,7 +170,7 @@ def _near_zero(low: float, high: float) -> bool:
     return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
-def _blanks(sources: Sequence[Pictured], drawn: Sequence[Drawn], x: Scaling, across: Across) -> Iterator[Item]:
+def _blanks(sources: Sequence[Pictured], drawn: Sequence[PanelCourse], x: Scaling, across: Across) -> Iterator[Item]:
     """What stays empty, and why: beyond the horizon of every run, or all of a panel whose numbers are open."""
     if _all_open(drawn):
         yield Blank(x.low, x.high, ALL_OPEN)
@@ -158,19 +183,19 @@ def _blanks(sources: Sequence[Pictured], drawn: Sequence[Drawn], x: Scaling, acr
         yield Blank(claimed, x.high, OVER_NOTHING)
 
 
-def _curves(drawn: Sequence[Drawn], y: Scaling, size: float, across: Across) -> Iterator[Item]:
+def _curves(drawn: Sequence[PanelCourse], y: Scaling, size: float, across: Across, height: float) -> Iterator[Item]:
     """The curves with the bands of their errors, where these are seen, and their extremes."""
     for each in drawn:
         values, x = size * each.course.values, across.size * each.x
         error = size * (each.course.error or 0.0)
-        if error > VISIBLE * (y.high - y.low) and np.isfinite(error):
+        if error * height > VISIBLE * (y.high - y.low) and np.isfinite(error):
             yield Band(f"stated error of {each.name}", x, values - error, values + error, each.pen)
         yield Trace(each.name, x, values, each.pen)
     for each in drawn:
         yield from _extremes(each, size, across)
 
 
-def _extremes(drawn: Drawn, size: float, across: Across) -> Iterator[Spot]:
+def _extremes(drawn: PanelCourse, size: float, across: Across) -> Iterator[Spot]:
     """The lowest and the highest with their values and instants; of what does not vary its value."""
     low, high, error = drawn.course.low, drawn.course.high, drawn.course.error or 0.0
     varies = high.value - low.value > max(STEADY * max(abs(low.value), abs(high.value)), 2.0 * error)
@@ -185,7 +210,7 @@ def _extremes(drawn: Drawn, size: float, across: Across) -> Iterator[Spot]:
         yield Spot(x, size * peak.value, text, drawn.pen, filled=True, note=f"{drawn.name}: {word} {text}")
 
 
-def _place(drawn: Drawn, peak: Peak, across: Across) -> tuple[float, str]:
+def _place(drawn: PanelCourse, peak: Peak, across: Across) -> tuple[float, str]:
     """Where an extreme stands along the axis across, and that in words."""
     assert peak.at is not None
     if across.over is None:
@@ -219,7 +244,7 @@ def _words(source: Pictured) -> Iterator[str]:
     yield "; ".join(parts)
 
 
-def _notes(drawn: Sequence[Drawn], panels: Sequence[Panel]) -> list[str]:
+def _notes(drawn: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[str]:
     """What is open, throughout or somewhere, and so is not drawn there; what bands are."""
     gaps = [np.isnan(each.course.values) for each in drawn]
     all_open = [each.name for each, lost in zip(drawn, gaps, strict=True) if lost.all()]

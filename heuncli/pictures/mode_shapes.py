@@ -114,11 +114,11 @@ def _in_world(found: MovedBodies, body: int, points: Array) -> Array:
 
 def _displacements(found: MovedBodies, mode: int, line: MovingLine) -> Array:
     """How far the points of a line go, (n, 3) complex."""
-    moved = [
-        found.moved(mode, body, point) if body >= 0 else np.zeros(3, dtype=complex)
-        for body, point in zip(line.bodies, line.points, strict=True)
-    ]
-    return np.array(moved)
+    moved = np.zeros(line.points.shape, dtype=complex)
+    for body in set(line.bodies) - {-1}:
+        own = np.array(line.bodies) == body
+        moved[own] = found.moved(mode, body, line.points[own])
+    return moved
 
 
 def _drawn(found: MovedBodies, k: int, mode: Mode, lines: list[MovingLine], extent: float) -> DrawnMode:

@@ -17,6 +17,7 @@ NAMES = {
     "force": "force of the masses ON the foundation", "moment": "moment of the masses ON the foundation",
     "torque": "torque of the inertia", "load": "torque of loads and weight on the shaft",
 }  # fmt: skip
+BARS = "bars: the largest magnitude that an order reaches over a turn"
 WRITTEN = 1e-3  # of the largest bar: smaller ones are not written beside
 LEFT = "with the counterweights"
 PEN, PEN_LEFT = 0, 1
@@ -34,9 +35,12 @@ def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
     panels = []
     for quantity in NAMES:
         some = [source for source in sources if quantity in source.found.orders]
-        high = max((_largest(source.found, quantity) for source in some), default=0.0)
-        panels += [_panel(source, quantity, high, units) for source in some]
-    words = [sentence for source in sources for sentence in _words(source)]
+        high: dict[str, float] = {}
+        for source in some:
+            unit = unit_of(source.found, quantity)
+            high[unit] = max(high.get(unit, 0.0), _largest(source.found, quantity))
+        panels += [_panel(source, quantity, high[unit_of(source.found, quantity)], units) for source in some]
+    words = [*(sentence for source in sources for sentence in _words(source)), BARS]
     left = any(source.found.counterbalance is not None for source in sources)
     legend = [("as it is", PEN), (LEFT, PEN_LEFT)] if left else []
     notes = [note for source in sources for note in source.found.notes]
@@ -46,7 +50,7 @@ def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
 def _largest(found: BalanceResults, quantity: str) -> float:
     """The largest order that is drawn."""
     rows = [*found.orders[quantity], *_left(found).get(quantity, ())]
-    return max((row.size for row in rows if row.order in found.shown), default=0.0)
+    return max((row.reach for row in rows if row.order in found.shown), default=0.0)
 
 
 def _left(found: BalanceResults) -> Mapping[str, tuple[OrderRow, ...]]:
@@ -64,14 +68,14 @@ def _panel(source: BalancedScene, quantity: str, high: float, units: Units) -> P
     y = Scaling(f"[{unit}]", 0.0, ends(0.0, size * high or 1.0, spare=0.25)[1])
     about = f", about {place_of(found)}" if quantity == "moment" else ""
     title = f"{f'{source.name}: ' if source.name else ''}{NAMES[quantity]}{about}"
-    sizes = {row.order: size * row.size for row in found.orders[quantity] if row.order in places and row.size > 0.0}
+    sizes = {row.order: size * row.reach for row in found.orders[quantity] if row.order in places and row.reach > 0.0}
     items: list[Item] = [
         Bars(NAMES[quantity], np.array([places[order] for order in sizes]), np.array(list(sizes.values())), PEN)
     ]
     items += _written(sizes, places, size * high)
     for row in _left(found).get(quantity, ()):
         if row.order in places:
-            items.append(Spot(places[row.order], size * row.size, "", PEN_LEFT, "diamond", filled=True))
+            items.append(Spot(places[row.order], size * row.reach, "", PEN_LEFT, "diamond", filled=True))
     return Panel(x, y, tuple(items), title=title)
 
 

@@ -1,7 +1,6 @@
 """Vectors over a run as curves of their tips: where on a journal, in a shell or on the ground a load points.
 
-The largest is that of the parts in the plane, searched between the samples. Marks along a curve are angles of what
-turns, or instants where nothing turns on.
+Marks along a curve are angles of what turns, or instants where nothing turns on.
 """
 
 from __future__ import annotations
@@ -12,65 +11,26 @@ from collections.abc import Iterator, Mapping, Sequence
 import numpy as np
 
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Trace
-from heuncli.drawing.ticks import ends, short, ticks
-from heuncli.named_tuples import NamedTuple
+from heuncli.drawing.ticks import ends, ticks
 from heuncli.pictures.certain import certain
-from heuncli.pictures.courses import Pictured, instants, vectors_at
-from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
-from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.turning import TurningRun, angles_of, turning_of
+from heuncli.pictures.courses import Pictured, vectors_at
+from heuncli.pictures.polar_words import notes_of, seen
+from heuncli.pictures.tips import Largest, TipCurve, largest_of, tip_curves
+from heuncli.pictures.turning import TurningRun
 from heuncli.report.table_units import Units
 from heuncli.results import Array
-from heuncli.results_schema import SPACE
-from heuncli.study.ask.measure import stated_error
-from heuncli.study.ask.study import Study
-from heuncli.study.search import extremes
 from heuncli.study.search.extremes import sides_of_jumps
-from heuncli.variants.stated import unit_of
 
 HEIGHT = 460.0  # pixels
 SLIM = 0.75  # of the longer side of a panel, what the shorter is at least
 STEPS = (30, 45, 90, 180, 360, 720, 1440, 3600)  # degrees between marks
-MOST_MARKS = 24
+MOST_MARKS = 16
 INSTANTS = 9  # marks of a run in which nothing turns on
 ROOM = (0.08, 0.04)  # of a panel's width and height: nearer to other words none are written
+CROWD = 2  # other marks within that, of which some have words
 HEADINGS = (0.2, 0.55, 0.9)  # of a curve's points: where its direction is shown
 HEADING, WIDE = 14.0, 700.0  # pixels: how long such an arrow is, and how wide a panel may be
 JUMP = 0.01  # of a panel's width: what is drawn as a jump
-THRUST = 1e-6  # of the largest vector: what stands across the plane and is worth a note
-
-
-class TipCurve(NamedTuple):
-    """The tips of a vector: (n, 3), in a plane, over the instants of a turning; named in the legend, with its pen."""
-
-    name: str
-    path: str
-    unit: str
-    pen: int
-    study: Study
-    turning: TurningRun
-    vectors: Array
-    plane: Plane
-
-    @property
-    def x(self) -> Array:
-        """To the right."""
-        return np.asarray(self.vectors @ self.plane.right)
-
-    @property
-    def y(self) -> Array:
-        """Up."""
-        return np.asarray(self.vectors @ self.plane.up)
-
-
-class Largest(NamedTuple):
-    """The largest vector: its two parts, its magnitude in the plane and its stated error, its instant."""
-
-    x: float
-    y: float
-    size: float
-    error: float
-    at: float
 
 
 def polar(
@@ -80,77 +40,16 @@ def polar(
 
     Raises NotDrawable.
     """
-    curves = list(_curves(sources, paths, axes, view))
+    curves = list(tip_curves(sources, paths, axes, view))
     groups: dict[tuple[object, ...], list[TipCurve]] = {}
     for curve in curves:
         groups.setdefault((curve.unit, curve.plane.key), []).append(curve)
-    largest = {curve.pen: _largest(curve) for curve in curves}
+    largest = {curve.pen: largest_of(curve) for curve in curves}
     panels = [_panel(group, largest, units) for group in groups.values()]
-    words = [f"{_called(source)}: {curve.turning.in_words}" for source, curve in _firsts(sources, curves)]
-    words.append(_axes_in_words(axes, curves))
-    notes = [note for curve in curves for note in _notes(curve, largest[curve.pen], units)]
+    words = list(seen(sources, curves, axes))
+    notes = [note for curve in curves for note in notes_of(curve, largest[curve.pen], units)]
     title = sources[0].study.results.title
     return Figure(title, words, panels, [(curve.name, curve.pen) for curve in curves], notes)
-
-
-def _curves(sources: Sequence[Pictured], paths: Sequence[str], axes: str, view: str | None) -> Iterator[TipCurve]:
-    """The curves, each with its pen."""
-    number = 0
-    for source in sources:
-        study = source.study
-        for path in paths:
-            _require_vector(study, path)
-        turning = _turning(study, paths)
-        for path in paths:
-            vectors = vectors_at(study, path, turning.times)
-            plane = (
-                plane_seen_along(view)
-                if view is not None
-                else plane_of(study, path, vectors, turning.times, axes, turning.path)
-            )
-            name = f"{source.name}: {path}" if source.name else path
-            yield TipCurve(name, path, unit_of(path, study.spec), number, study, turning, vectors, plane)
-            number += 1
-
-
-def _require_vector(study: Study, path: str) -> None:
-    """Raise NotDrawable where there is no vector over the instants."""
-    numbers = study.numbers(path)
-    if numbers.axes != (SPACE,) or not numbers.timed:
-        message = f"polar {path}: a polar diagram is of a vector over the instants, and this is none"
-        raise NotDrawable(message, "such as polar joints.main, or polar foundation")
-    if study.of_one_instant:
-        message = f"polar {path}: there is one instant, and so no curve"
-        raise NotDrawable(message, "give the scene a motion: analysis.duration")
-
-
-def _turning(study: Study, paths: Sequence[str]) -> TurningRun:
-    """What is seen of a run."""
-    candidates = [path for path in angles_of(study.spec) if path.split(".")[1] in study.results.coordinates]
-    return turning_of(
-        study, instants(study), candidates, lambda t: np.hstack([vectors_at(study, path, t) for path in paths])
-    )
-
-
-def _largest(curve: TipCurve) -> Largest | None:
-    """The largest vector in the plane; None where none is known."""
-    study, plane = curve.study, curve.plane
-
-    def sample(times: Array) -> Array:
-        own = vectors_at(study, curve.path, times)
-        return np.asarray(((own @ plane.right) ** 2 + (own @ plane.up) ** 2)[:, None])
-
-    looked_at = study.search_times
-    times = curve.turning.times
-    times = np.union1d(times, looked_at[(looked_at >= times[0]) & (looked_at <= times[-1])])
-    error = stated_error(study, study.numbers(curve.path).keys)
-    found = extremes.search(sample, times, errors=np.array([error]), even=np.array([True]), sides=(1.0,))
-    at = float(found.high_at[0])
-    if not np.isfinite(found.high[0]):
-        return None
-    vector = vectors_at(study, curve.path, np.array([at]))[0]
-    x, y = float(vector @ plane.right), float(vector @ plane.up)
-    return Largest(x, y, math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error, at)
 
 
 def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
@@ -163,7 +62,11 @@ def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], uni
     items: list[Item] = [Spot(0.0, 0.0, "", None, "square", filled=True)]
     written: list[tuple[float, float]] = [(0.0, 0.0)]
     for curve in group:
-        items += _curve(curve, largest[curve.pen], size, unit, (x, y), written)
+        items += _curve(curve, largest[curve.pen], size, unit, (x, y))
+        own = largest[curve.pen]
+        if own is not None:
+            written.append((size * own.x, size * own.y))
+    items += _marked(group, size, (x, y), written)
     return Panel(x, y, tuple(items), HEIGHT, equal=True)
 
 
@@ -188,26 +91,34 @@ def _quantity(group: Sequence[TipCurve]) -> str:
 
 
 def _curve(
-    curve: TipCurve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling],
-    written: list[tuple[float, float]],
-) -> Iterator[Item]:  # fmt: skip
-    """A curve with its direction, its marks and its largest vector."""
+    curve: TipCurve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling]
+) -> Iterator[Item]:
+    """A curve with its direction and its largest vector."""
     x, y = size * curve.x, size * curve.y
     yield Trace(curve.name, *_broken(curve.turning.times, x, y, sides[0].high - sides[0].low), curve.pen)
     unit_a_pixel = max((sides[0].high - sides[0].low) / WIDE, (sides[1].high - sides[1].low) / HEIGHT)
     yield from _headings(x, y, curve.pen, HEADING * unit_a_pixel)
-    if largest is not None and largest.size > 0.0:
+    if largest is not None and largest.size > 0.0 and not largest.steady:
         yield Arrow(0.0, 0.0, size * largest.x, size * largest.y, curve.pen)
         text = f"{certain(size * largest.size, size * largest.error)} {unit}"
         yield Spot(size * largest.x, size * largest.y, text, curve.pen, "circle", filled=True)
-        written.append((size * largest.x, size * largest.y))
-    for at, text in _marks(curve.turning):
-        vector = vectors_at(curve.study, curve.path, np.array([at]))[0]
-        place = size * float(vector @ curve.plane.right), size * float(vector @ curve.plane.up)
-        if not all(map(math.isfinite, place)):
-            continue
-        free = not any(_near(place, other, sides) for other in written)
-        yield Spot(*place, text if free else "", curve.pen)
+
+
+def _marked(
+    group: Sequence[TipCurve], size: float, sides: tuple[Scaling, Scaling], written: list[tuple[float, float]]
+) -> Iterator[Spot]:
+    """The marks along curves, with words where these are not in a crowd; written: where other words stand."""
+    marks: list[tuple[int, tuple[float, float], str]] = []
+    for curve in group:
+        found = _marks(curve.turning)
+        vectors = size * vectors_at(curve.study, curve.path, np.array([at for at, _ in found]))
+        places = zip((vectors @ curve.plane.right).tolist(), (vectors @ curve.plane.up).tolist(), strict=True)
+        marks += [(curve.pen, place, text) for place, (_, text) in zip(places, found, strict=True)]
+    known = [mark for mark in marks if all(map(math.isfinite, mark[1]))]
+    for number, place, text in known:
+        crowd = sum(_near(place, other, sides) for _, other, _ in known) - 1
+        free = crowd <= CROWD and not any(_near(place, other, sides) for other in written)
+        yield Spot(*place, text if free else "", number)
         written += [place] if free else []
 
 
@@ -253,60 +164,3 @@ def _near(place: tuple[float, float], other: tuple[float, float], sides: tuple[S
     return all(
         abs(a - b) < room * (side.high - side.low) for a, b, room, side in zip(place, other, ROOM, sides, strict=True)
     )
-
-
-def _firsts(sources: Sequence[Pictured], curves: Sequence[TipCurve]) -> Iterator[tuple[Pictured, TipCurve]]:
-    """Each source with the first of its curves."""
-    for source in sources:
-        yield source, next(curve for curve in curves if curve.study is source.study)
-
-
-def _called(source: Pictured) -> str:
-    """How a run is called in the line that tells what is seen of it."""
-    return source.name or str(source.study.results.spec.get("path", ""))
-
-
-def _axes_in_words(axes: str, curves: Sequence[TipCurve]) -> str:
-    """Whose loads these are, in which axes."""
-    joints = [curve for curve in curves if curve.path.startswith("joints.")]
-    on = "of a joint: what `from` exerts ON `to`; of the foundation: ON it; "
-    if axes == "world" or not joints:
-        return f"{on}world axes"
-    bodies = {_body_of(curve, axes) for curve in joints}
-    return f"{on}joints in the axes of {', '.join(sorted(bodies))} (`{axes}`)"
-
-
-def _body_of(curve: TipCurve, axes: str) -> str:
-    """The body whose axes a joint's loads are told in."""
-    joint = curve.study.spec.joints[curve.path.split(".")[1]]
-    return joint.a if axes == "from" else joint.b
-
-
-def _notes(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator[str]:
-    """The largest with its direction and instant; what is not drawn."""
-    unit, size = units.of(curve.unit)
-    if largest is None:
-        yield f"{curve.name}: open or not known, and not drawn"
-        return
-    first, second = curve.plane.names
-    when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
-    if curve.turning.path:
-        angle = float(np.interp(largest.at, curve.turning.times, curve.turning.counted))
-        whole = 360.0 * curve.turning.turns
-        when += f", {curve.turning.path} = {_degrees(angle, whole)}"
-    way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    yield f"{curve.name}: largest {certain(size * largest.size, size * largest.error)} {unit} {way}, {when}"
-    along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
-    if along > THRUST * largest.size:
-        yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
-    if np.isnan(curve.vectors).any():
-        yield f"{curve.name}: open or not known in parts, and not drawn there"
-    if "1" in curve.plane.names:
-        words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.up))
-        yield f"{curve.name}: directions 1 and 2 are {' and '.join(words)}"
-
-
-def _degrees(angle: float, whole: float) -> str:
-    """An angle to four digits, of a circle or a cycle within that; whole: 0 where it is counted on."""
-    told = float(f"{angle % whole if whole else angle:.4g}")
-    return f"{0.0 if whole and told >= whole else told:g}°"

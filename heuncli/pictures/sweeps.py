@@ -13,11 +13,10 @@ import numpy as np
 
 from heuncli.drawing.figure import Band, Bars, Cells, Figure, Item, Panel, Scaling, Spot, Strokes, Trace
 from heuncli.drawing.pens import PENS
-from heuncli.drawing.ticks import ends
-from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.certain import certain
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, example, picked
+from heuncli.pictures.variable_axes import NAMES_MOST, axis_of, edges_of, measured_axis
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Indices
 
@@ -28,16 +27,6 @@ MOST_CELLS = 40_000
 MOST_SPOTS = 1_500
 MOST_PANELS = 16
 FIELD, SHADES, STEPS = 300.0, 16.0, 48  # pixels: a field's height, and that of its shades; how many of these
-NAMES_WIDE, NAMES_MOST = 100, 12  # letters and names below an axis; more are numbered
-EVEN = 1e-6  # of steps between values: those of equal steps
-
-
-class VariableAxis(NamedTuple):
-    """A variable along an axis: its places (n,) of all rows, its levels, how these are told, and what is numbered."""
-
-    variable: SweptVariable
-    scaling: Scaling
-    note: str
 
 
 def sweep(table: SweptTable, units: Units, words: Sequence[str] = ()) -> Figure:
@@ -75,12 +64,12 @@ def _curves(own: PickedTable, units: Units) -> Drawn:
     """Curves over one variable, one for each combination of the others."""
     across, others = _across(own)
     groups = _groups(own, others)
-    x = _axis(across)
+    x = axis_of(across)
     panels = []
     for measure in own.table.measures:
         shown, size = units.of(measure.unit)
         items: list[Item] = []
-        y = _upward(shown, size * measure.values, size * measure.errors)
+        y = measured_axis(shown, size * measure.values, size * measure.errors)
         for number, (name, rows) in enumerate(groups):
             order = rows[np.argsort(across.values[rows], kind="stable")]
             own_x, values = across.values[order], size * measure.values[order]
@@ -150,12 +139,12 @@ def _points(
 def _bars(own: PickedTable, units: Units) -> Drawn:
     """A bar a name, as of load cases; with their stated errors where these are seen."""
     (across,) = own.varied
-    x = _axis(across)
+    x = axis_of(across)
     panels = []
     for measure in own.table.measures:
         shown, size = units.of(measure.unit)
         values, errors = size * measure.values, size * measure.errors
-        y = _upward(shown, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
+        y = measured_axis(shown, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
         items: list[Item] = [Bars(measure.text, across.values, values)]
         seen = np.isfinite(values) & (errors > VISIBLE * (y.high - y.low))
         if seen.any():
@@ -177,7 +166,7 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
     if len(across.levels) * len(upward.levels) > MOST_CELLS:
         message = f"{own.table.origin}: {len(across.levels)} by {len(upward.levels)} cells; at most {MOST_CELLS:,}"
         raise NotDrawable(message, f"hold one, as {example(across)}")
-    x, y = _axis(across, cells=True), _axis(upward, cells=True)
+    x, y = axis_of(across, cells=True), axis_of(upward, cells=True)
     panels: list[Panel] = []
     notes = [one.note for one in (x, y) if one.note]
     for measure in own.table.measures:
@@ -185,7 +174,7 @@ def _fields(own: PickedTable, units: Units) -> Drawn:
         values = np.full((len(upward.levels), len(across.levels)), np.nan)
         at = np.searchsorted(upward.levels, upward.values), np.searchsorted(across.levels, across.values)
         values[at] = size * measure.values
-        cells = Cells(measure.text, _edges(across, x.scaling), _edges(upward, y.scaling), values)
+        cells = Cells(measure.text, edges_of(across, x.scaling), edges_of(upward, y.scaling), values)
         panels.append(Panel(x.scaling, y.scaling, (cells,), FIELD, title=f"{measure.text} [{shown or '-'}]"))
         known = np.isfinite(measure.values)
         if known.any():
@@ -231,66 +220,12 @@ def _scatter(own: PickedTable, units: Units) -> Drawn:
     for measure, variable in product(own.table.measures, chosen):
         shown, size = units.of(measure.unit)
         values = size * measure.values
-        y, x = _upward(shown, values, np.zeros_like(values)), _axis(variable)
+        y, x = measured_axis(shown, values, np.zeros_like(values)), axis_of(variable)
         some = zip(variable.values[::every].tolist(), values[::every].tolist(), strict=True)
         spots = tuple(Spot(a, b, "", 0) for a, b in some if np.isfinite(b))
         panels.append(Panel(x.scaling, y, spots, title=measure.text))
     notes = [f"every {every}th of {own.table.rows:,} variants is drawn"] if every > 1 else []
-    return panels, [], notes + [note for one in chosen if (note := _axis(one).note)]
-
-
-def _axis(variable: SweptVariable, *, cells: bool = False) -> VariableAxis:
-    """A variable along an axis; cells: each of its values has a cell."""
-    levels = variable.levels
-    if variable.texts:
-        names = [variable.texts[int(k)] for k in levels]
-        numbered = len(names) > NAMES_MOST or sum(map(len, names)) > NAMES_WIDE
-        told = [str(k + 1) for k in range(len(names))] if numbered else names
-        scaling = Scaling(
-            variable.name, float(levels[0]) - 0.5, float(levels[-1]) + 0.5,
-            named=tuple(zip(levels.tolist(), told, strict=True)),
-        )  # fmt: skip
-        pairs = ", ".join(f"{k} {name}" for k, name in zip(told, names, strict=True))
-        return VariableAxis(variable, scaling, f"{variable.name}: {pairs}" if numbered else "")
-    by_ratio = _by_ratio(levels)
-    if cells:
-        edges = _between(levels, by_ratio)
-        return VariableAxis(variable, Scaling(variable.head, float(edges[0]), float(edges[-1]), by_ratio), "")
-    if by_ratio:
-        return VariableAxis(variable, Scaling(variable.head, float(levels[0]), float(levels[-1]), logarithmic=True), "")
-    return VariableAxis(variable, Scaling(variable.head, *ends(float(levels[0]), float(levels[-1]), spare=0.03)), "")
-
-
-def _by_ratio(levels: Array) -> bool:
-    """Whether values stand evenly by their logarithms, and not by themselves."""
-    if len(levels) < 3 or levels[0] <= 0.0:
-        return False
-    steps, ratios = np.diff(levels), np.diff(np.log(levels))
-    return bool(np.ptp(ratios) <= EVEN * ratios.max() and np.ptp(steps) > EVEN * steps.max())
-
-
-def _between(levels: Array, by_ratio: bool) -> Array:
-    """The edges of the cells of values, (n + 1,): half way between neighbours."""
-    at = np.log(levels) if by_ratio else levels
-    middle = 0.5 * (at[1:] + at[:-1])
-    edges = np.concatenate([[2.0 * at[0] - middle[0]], middle, [2.0 * at[-1] - middle[-1]]])
-    return np.asarray(np.exp(edges) if by_ratio else edges)
-
-
-def _edges(variable: SweptVariable, scaling: Scaling) -> Array:
-    """The edges of the cells of a variable along its axis."""
-    if variable.texts:
-        return np.asarray(np.arange(len(variable.levels) + 1) + scaling.low)
-    return _between(variable.levels, scaling.logarithmic)
-
-
-def _upward(unit: str, values: Array, errors: Array, spare: float = 0.12) -> Scaling:
-    """The axis of a measure."""
-    known = np.isfinite(values)
-    low = float((values - errors)[known].min()) if known.any() else 0.0
-    high = float((values + errors)[known].max()) if known.any() else 1.0
-    zero = low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
-    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=zero, spare=spare))
+    return panels, [], notes + [note for one in chosen if (note := axis_of(one).note)]
 
 
 def _named_below(panels: Sequence[Panel]) -> list[Panel]:

@@ -25,6 +25,7 @@ from heuncli.results import Array, Extremes
 
 MANY = 40  # groups beyond which each gets one line
 PARTLY_OPEN_NOTE = "* open at some instants; the extremes are those of the others"
+NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 
 

@@ -144,7 +144,7 @@ def build(plan: TablePlan, results: Results, labels: Labels, series: Iterable[Se
     if plan.of_foundation:
         groups, notes = _supports(groups, results)
     if plan.kind == "joints":
-        notes = _chosen(results)
+        notes = chosen_components(results)
     if plan.kind == "energy" and groups:
         groups = [_with_sum(groups[0])]
     heading = plan.heading(results, labels)
@@ -186,7 +186,7 @@ def _supports(groups: list[RowGroup], results: Results) -> tuple[list[RowGroup],
     return groups, ('supports: moment about the joint\'s "to" point; elements: about their own point',)
 
 
-def _chosen(results: Results) -> tuple[str, ...]:
+def chosen_components(results: Results) -> tuple[str, ...]:
     """Which open components are shown with the values of one chosen split."""
     chosen = [
         f"{name} {' '.join(short(component) for component in joint['chosen'])}"

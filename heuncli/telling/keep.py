@@ -19,7 +19,7 @@ from heuncli.report.run_searches import stresses_along
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import SHARES
-from heuncli.study.ask.study import Study
+from heuncli.study.ask.study import MOST_SEARCHED, Study
 from heuncli.study.search.extremes import MOST_COLUMNS, ColumnSearch, no_columns
 from heuncli.telling.columns import KeptColumn, KeptScope, Told, all_columns, columns_of, position, run_path, values_of
 from heuncli.telling.kept import (
@@ -41,6 +41,19 @@ def keep(study: Study, wanted: frozenset[str], even_at: Sequence[float] = ()) ->
     page = page_of(results, labels, study.magnitudes)
     told, scope = Told(results, labels, page.certain), KeptScope(wanted, labels)
     return record_of(_course(study, page, told, _even(results, even_at), scope), page, scope)
+
+
+def looks_between(study: Study, wanted: frozenset[str]) -> bool:
+    """Whether the extremes that are kept are searched between the samples, too, or there are none between them."""
+    results = study.results
+    scope = KeptScope(wanted, labels_of(study.spec))
+    along = sum(len(run.loads) for run in scope.runs(results))
+    return study.of_one_instant or is_searched(study, len(columns_of(results, scope)) + along)
+
+
+def is_searched(study: Study, columns: int) -> bool:
+    """Whether so many columns are searched between the samples, or are too many for that."""
+    return columns <= MOST_COLUMNS and columns * len(study.search_times) <= MOST_SEARCHED
 
 
 def _even(results: Results, given: Sequence[float]) -> Array:
@@ -76,7 +89,7 @@ def _bounds(study: Study, page: Page, scope: KeptScope) -> dict[str, KeptBounds]
         lambda results: _squared(columns_of(results, scope), len(results.time)), [[i] for i in range(len(columns))],
         np.array(errors), even, page.along if runs else None,
     )  # fmt: skip
-    times = None if len(errors) <= MOST_COLUMNS else study.results.time
+    times = None if is_searched(study, len(errors)) else study.results.time
     found = study.extremes(searched, scope.wanted - {SHARES}, whole=True, times=times)
     low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (found.low, found.high))
     bounds = {

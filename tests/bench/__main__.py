@@ -1,7 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
 Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, reports; each line: what, error, time; memory: megabytes; growth: counts.
+variants, sweeps, pictures, reports, pages; each line: what, error, time; memory: megabytes; growth: counts; pages:
+frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -45,6 +46,8 @@ from tests.bench.honesty import honesty
 from tests.bench.lagrange import equations
 from tests.bench.long import long
 from tests.bench.memory import memory
+from tests.bench.pages import pages
+from tests.bench.pictures import pictures
 from tests.bench.pipeline import pipeline
 from tests.bench.reduced import reduced
 from tests.bench.reports import reports
@@ -210,7 +213,7 @@ PARTS = {
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
-    "reports": lambda: reports(median_ms),
+    "pictures": pictures, "reports": lambda: reports(median_ms), "pages": pages,
 }  # fmt: skip
 
 if __name__ == "__main__":

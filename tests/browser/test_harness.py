@@ -70,9 +70,9 @@ def test_what_is_seen_is_counted(browser: Chromium, tmp_path: Path) -> None:
         tab.evaluate("document.querySelector('label').remove()")
         seen = tab.seen()
         assert (seen.box, seen.marked, seen.colours) == ([100, 50, 140, 80], 40 * 30, 2)
-        assert seen.corner == [255, 255, 255]
+        assert seen.ground == [255, 255, 255]
     with browser.open(written(tmp_path), dark=True) as tab:
-        assert tab.seen().corner == [0x12, 0x34, 0x56]
+        assert tab.seen().ground == [0x12, 0x34, 0x56]
 
 
 def test_controls_are_told_with_their_names(browser: Chromium, tmp_path: Path) -> None:

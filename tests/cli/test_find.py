@@ -15,6 +15,8 @@ from heuncli.variants.once import REASONS
 from tests.shared.command import Heun
 from tests.shared.variant_scenes import CANTILEVER, PENDULUM, ROOT, TENSION, TWO_BARS
 
+pytestmark = pytest.mark.heavy  # what is told of hundreds of runs is the same with both kernels
+
 FOUND = ("find", "-", "a=5:95deg", f"{TENSION} = 0.03 kN")
 
 

@@ -12,6 +12,8 @@ import pytest
 from tests.shared.command import Heun
 from tests.shared.variant_scenes import CANTILEVER, PENDULUM, ROOT, TENSION, TWO_BARS
 
+pytestmark = pytest.mark.heavy  # what is told of hundreds of runs is the same with both kernels
+
 ASKED = ("sensitivity", "-", "--measure", TENSION)
 
 

@@ -17,6 +17,8 @@ from heuncli.results_schema import quantity
 from tests.shared.cited_texts import PACKAGE, TESTS, equations, scopes, texts, tree
 from tests.shared.folders import ROOT
 
+pytestmark = pytest.mark.heavy  # texts alone, which are those of both kernels
+
 NUMBER = re.compile(r"\((1[6-9]|[2-5]\d|6[01])\)")  # of an equation of the paper
 IDENTITIES = frozenset({19, *range(22, 29), 41})  # no function computes them alone
 JSON_KEYS = {"lagrange": {*ALWAYS, *(key for keys in KEYS.values() for key in keys)}}  # behind commands

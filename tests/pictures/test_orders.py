@@ -6,7 +6,9 @@ import json
 import re
 import xml.etree.ElementTree as tree
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.shared.command import Heun
@@ -23,6 +25,13 @@ def bars(panel: PlottedPanel) -> list[float]:
     return [float(panel.y.values(points[:, 1].min())) for points in areas if panel.holds(points)]
 
 
+def reach(row: dict[str, Any]) -> float:
+    """The largest magnitude of an order over a turn, looked for at many angles."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 3601)[:, None]
+    values = np.array(row["amplitude"]) * np.cos(turn - np.array(row["phase"]))
+    return float(np.sqrt((values**2).sum(axis=1)).max())
+
+
 @pytest.mark.parametrize("spec", [CRANK, ENGINE])
 def test_bars_are_as_high_as_the_orders(heun: Heun, spec: str) -> None:
     assert heun("plot", spec, "balance", "-o", "drawn.svg").returncode == 0
@@ -31,9 +40,15 @@ def test_bars_are_as_high_as_the_orders(heun: Heun, spec: str) -> None:
     panels = panels_of(text)
     assert len(panels) == len(found["harmonics"])
     for panel, rows in zip(panels, found["harmonics"].values(), strict=True):
-        sizes = {row["order"]: sum(a * a for a in row["amplitude"]) ** 0.5 for row in rows}
+        sizes = {row["order"]: reach(row) for row in rows}
         shown = [size for order, size in sizes.items() if size > 0.0 and order in range(1, LAST + 1)]
         assert bars(panel) == pytest.approx(shown, abs=abs(panel.y.step))
+
+
+def test_of_what_goes_round_it_is_the_radius(heun: Heun) -> None:
+    heun("plot", str(SPECS / "rotor.yaml"), "balance", "-o", "drawn.svg")
+    panel = panels_of(Path("drawn.svg").read_text())[0]
+    assert bars(panel) == pytest.approx([0.02 * 0.04 * (100.0 * np.pi) ** 2], abs=abs(panel.y.step))
 
 
 def test_the_words_are_those_of_the_tables(heun: Heun) -> None:
@@ -54,7 +69,7 @@ def test_save_draws_the_same_and_counterweights_beside_it(heun: Heun) -> None:
     panel = panels_of(Path("three.svg").read_text())[0]
     diamonds = [points_of(e) for e in tree.parse("three.svg").iter(f"{SVG}polygon") if e.get("fill") == "#d55e00"]
     first = next(points for points in diamonds if panel.holds(points))
-    size = sum(a * a for a in left[0]["amplitude"]) ** 0.5
+    size = reach(left[0])
     assert panel.y.values(first[:, 1]).mean() == pytest.approx(size, abs=abs(panel.y.step))
 
 

@@ -145,3 +145,59 @@ def test_units_and_settings_are_told(heun: Heun) -> None:
     read = PageReader(done.stdout)
     assert "--set m=2" in read.by_tag["header"][0] and "--tolerance 1e-08" in read.by_tag["header"][0]
     assert ["Fz", "kN", "0.0196200"] in [row[:3] for row in read.rows]
+
+
+@pytest.mark.heavy
+def test_what_lies_beyond_the_horizon_is_no_extreme(heun: Heun) -> None:
+    spec = str(SPECS / "double.yaml")
+    words = ("--set", "analysis.duration=60", "-q")
+    horizon = json.loads(heun("run", spec, *words, "--format", "json", "--only", "joints").stdout)["accuracy"][
+        "horizon"
+    ]
+    read = PageReader(heun("report", spec, "-o", "-", *words).stdout)
+    assert f"from t = {horizon:.4g} s on nothing is claimed" in read.by_tag["header"][0]
+    instants = [float(row[k]) for row in read.rows if len(row) == 7 and row[0] != "" for k in (3, 5) if row[k]]
+    assert len(instants) > 20
+    assert max(instants) < horizon < 60.0
+
+
+OVERLOADED = """\
+heun: 1
+title: A cantilever
+gravity: [0, 0, -9.81]
+ground: {points: {wall: [0, 0, 0]}}
+bodies:
+  beam:
+    shapes: [{type: box, center: [0.5, 0, 0], size: [1, 0.02, 0.02], density: 7850}]
+    points: {root: [0, 0, 0], tip: [1, 0, 0]}
+joints: {wall: {type: weld, from: ground.wall, to: beam.root}}
+forces: {load: {type: force, on: beam.tip, vector: [0, 0, -F]}}
+parameters: {F: 100}
+sections:
+  along: {body: beam, from: root, to: tip, count: 5, properties: {rectangle: {width: 0.02, height: 0.02}}, strength: S}
+cases: {light: {set: {}}, heavy: {set: {F: 400}}}
+"""
+
+
+@pytest.mark.parametrize(("strength", "words"), [("100 MPa", "Beyond strength: along."), ("500 MPa", "")])
+def test_a_section_beyond_its_strength_is_said_first(heun: Heun, folder: Path, strength: str, words: str) -> None:
+    (folder / "beam.yaml").write_text(OVERLOADED.replace("strength: S", f"strength: {strength}"))
+    told = heun("run", "beam.yaml", "--case", "heavy", "--measure", "max sections.along.stress.utilisation", "-q")
+    read = PageReader(heun("report", "beam.yaml", "-o", "-").stdout)
+    (row,) = [row for row in read.rows if row[0] == "along" and row[1] == "heavy"]
+    assert close(row[-1], float(told.stdout.split()[-1]))
+    assert row[2] == "0 beyond"
+    assert row[-2] == strength.split()[0]
+    first = " ".join(read.by_tag["header"][0].split())
+    assert f"in section along, at s = 0 m beyond, in case heavy. {words}".strip() in first
+    assert ("Beyond strength" in first) == bool(words)
+
+
+def test_open_loads_are_said_first(heun: Heun) -> None:
+    read = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-").stdout)
+    assert "8 components of loads are open" in read.by_tag["header"][0]
+    assert ["Fz, |F|, axial", "", "open", ""] in read.rows
+    assert "joints.A Fz + joints.B Fz = 123.1 N; the split is open" in read.by_tag["li"]
+    split = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-", "--least-norm").stdout)
+    assert "other splits do as well" in split.by_tag["header"][0]
+    assert any(text.startswith("chosen, not certain: A Fz, B Fz") for text in split.by_tag["li"])

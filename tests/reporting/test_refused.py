@@ -61,3 +61,9 @@ def test_the_same_bytes_each_time_and_from_standard_input(heun: Heun, folder: Pa
     piped = heun("report", "-", "-o", "-", text=text).stdout
     named = heun("report", "swinging.yaml", "-o", "-").stdout
     assert piped.replace("&lt;stdin&gt;", "swinging.yaml") == named
+
+
+def test_a_time_limit_leaves_no_report(heun: Heun, folder: Path) -> None:
+    done = heun("report", "long.yaml", "-o", "x.html", "--time-limit", "0.05")
+    assert done.returncode == 4
+    assert not (folder / "x.html").exists()

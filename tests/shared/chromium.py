@@ -33,23 +33,24 @@ KEYS = {
     "PageDown": 34, "Enter": 13, "Escape": 27, "Tab": 9, " ": 32,
 }  # fmt: skip
 
-# Runs in a blank page of its own: the pixels of a screenshot, against the colour of its corner.
+# Runs in a blank page of its own: the pixels of a screenshot, against the colour that most of them have.
 SEEN = """async (png) => {
   const picture = await createImageBitmap(await (await fetch("data:image/png;base64," + png)).blob());
   const canvas = new OffscreenCanvas(picture.width, picture.height), pen = canvas.getContext("2d");
   pen.drawImage(picture, 0, 0);
   const pixels = new Uint32Array(pen.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
-  const colours = new Set(pixels);
+  const counts = new Map();
+  for (const pixel of pixels) counts.set(pixel, (counts.get(pixel) ?? 0) + 1);
+  const [ground] = [...counts].reduce((most, found) => (found[1] > most[1] ? found : most));
   let left = canvas.width, right = -1, top = canvas.height, bottom = -1, marked = 0;
   pixels.forEach((pixel, k) => {
-    if (pixel === pixels[0]) return;
+    if (pixel === ground) return;
     const x = k % canvas.width, y = (k - x) / canvas.width;
     left = Math.min(left, x), right = Math.max(right, x), top = Math.min(top, y), bottom = Math.max(bottom, y);
     marked += 1;
   });
-  const corner = pixels[0];
-  return {colours: colours.size, box: [left, top, right + 1, bottom + 1], marked, size: [canvas.width, canvas.height],
-    corner: [corner & 255, corner >> 8 & 255, corner >> 16 & 255]};
+  return {colours: counts.size, box: [left, top, right + 1, bottom + 1], marked, size: [canvas.width, canvas.height],
+    ground: [ground & 255, ground >> 8 & 255, ground >> 16 & 255]};
 }"""
 
 
@@ -59,13 +60,13 @@ def found() -> str | None:
 
 
 class Seen(NamedTuple):
-    """A screenshot: its colours, the box [left, top, right, bottom] and number of pixels unlike its first one."""
+    """A screenshot: how many colours, the commonest, the box [left, top, right, bottom] and number of other pixels."""
 
     colours: int
     box: list[int]
     marked: int
     size: list[int]
-    corner: list[int]
+    ground: list[int]
     png: bytes
 
 
@@ -122,7 +123,7 @@ class Chromium:
     def seen(self, png: bytes) -> Seen:
         """What is on a screenshot."""
         told = self._blank.evaluate(f"({SEEN})({json.dumps(base64.b64encode(png).decode())})")
-        return Seen(told["colours"], told["box"], told["marked"], told["size"], told["corner"], png)
+        return Seen(told["colours"], told["box"], told["marked"], told["size"], told["ground"], png)
 
     def send(self, method: str, session: str | None = None, **params: Any) -> dict[str, Any]:
         """The result of a command. Raises RuntimeError where the browser refuses it, TimeoutError."""

@@ -21,6 +21,7 @@ from heuncli.results_schema import leading_key
 from heuncli.scenery.machine import machine_of
 from heuncli.scenery.poses import poses_of
 from heuncli.spec.load import load
+from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
@@ -147,6 +148,27 @@ def test_cuts_stand_where_the_results_say(file: Path) -> None:
         e = np.array([section["first"], section["second"], section["normal"]])
         np.testing.assert_allclose(e @ e.T, np.eye(3), atol=1e-12)
         assert np.linalg.det(e) > 0.0
+
+
+@pytest.mark.parametrize("name", ["double", "engine", "jib", "whirling_rod", "hammered_four_bar", "compressor"])
+def test_no_largest_load_is_missed(name: str) -> None:
+    """Among the frames are those at which a search between the samples finds a load largest."""
+    study, page = shown(SPECS / f"{name}.yaml")
+    data = data_of(page)
+    count, looked = data["count"], 0
+    for row in rows(data):
+        if row["path"].split(".")[0] in ("joints", "foundation") and row["label"] == "force":
+            if len(row["path"].split(".")) > 3:
+                continue
+            vectors = np.stack([unpacked(packed, count) for _, packed in row["parts"]], axis=1)
+            found, wanted = float(np.sqrt((vectors**2).sum(axis=1)).max()), peak(study, row["path"], "max").value
+            assert found == pytest.approx(wanted, rel=1e-6), row["path"]
+            looked += 1
+    for section in data["sections"]:
+        for load_ in section["loads"]:
+            values = np.abs(unpacked(load_["values"], count * len(section["cuts"])))
+            assert values.max() <= abs(peak(study, load_["path"], "abs").value) * (1 + 1e-9)
+    assert looked > 0
 
 
 @pytest.mark.parametrize("name", ["double", "crane", "percussion", "table"])

@@ -70,7 +70,7 @@ def written(heun: Heun, folder: Path, *words: str) -> dict[str, object]:
 def test_a_long_run_is_thinned_and_that_is_said(heun: Heun, folder: Path) -> None:
     (folder / "fine.yaml").write_text(TURNED + "analysis: {duration: 1, samples: 3001}\n")
     found = written(heun, folder, "fine.yaml")
-    assert found["count"] == MOST and f"3001 instants; {MOST} of them" in str(found["told"])
+    assert found["count"] == MOST and "asked for at 3001 instants; 59" in str(found["told"])
     found = written(heun, folder, "fine.yaml", "--frames", "10")
     times = unpacked(found["time"], 10)  # type: ignore[arg-type]
     assert found["count"] == 10 and times[0] == 0.0 and times[-1] == 1.0

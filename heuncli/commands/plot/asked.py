@@ -74,7 +74,7 @@ def _ending(word: str) -> str:
 def _is_there(word: str) -> bool:
     """Whether there is a file or folder of that name; a word that can be none is none."""
     try:
-        return Path(word).exists()
+        return word != "" and Path(word).exists()
     except (OSError, ValueError):
         return False
 

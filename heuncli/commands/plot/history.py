@@ -13,7 +13,7 @@ from heuncli.commands.plot.request import PlotRequest
 from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.histories import history
-from heuncli.pictures.measurements import Measured, asked_points, measured
+from heuncli.pictures.measured_points import MeasuredPoints
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
@@ -32,12 +32,14 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     return history(sources, asked.paths, units(request.units), request.x, points)
 
 
-def _points(asked: PlotAsked, request: PlotRequest, spec: Spec) -> list[Measured]:
+def _points(asked: PlotAsked, request: PlotRequest, spec: Spec) -> list[MeasuredPoints]:
     """What was measured. Raises SpecError with all that is wrong with any of the files."""
     x_unit = "s" if request.x is None else unit_of(request.x, spec)
     kinds = [unit_of(path, spec) for path in asked.paths]
     return all_or_errors([partial(_measured, words, x_unit, kinds) for words in request.measured])
 
 
-def _measured(words: str, x_unit: str, kinds: Sequence[str]) -> Measured:
+def _measured(words: str, x_unit: str, kinds: Sequence[str]) -> MeasuredPoints:
+    from heuncli.pictures.measurements import asked_points, measured  # few pictures have any
+
     return measured(asked_points(words), x_unit, kinds)

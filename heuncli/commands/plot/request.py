@@ -44,7 +44,11 @@ class PlotRequest(NamedTuple):
     ] = None
     measured: Annotated[
         tuple[str, ...],
-        Option(("--with",), "Measured points over it: a CSV's columns of x and y. May be repeated.", "FILE:X:Y"),
+        Option(
+            ("--with",),
+            "Measured points over it: a CSV's columns, as t:F or t[ms]:2[kN]. May be repeated.",
+            "FILE:X:Y",
+        ),
     ] = ()
     at: Annotated[str | None, Option(("--at",), "At these instants: of diagrams and scenes.", "T,...")] = None
     axes: Annotated[

@@ -26,6 +26,7 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     specs = specs_of(asked.files, request)
     for _, spec in specs:
         _require_runs(names, spec)
+    _require_one_kind([spec for _, spec in specs])
     sources = [solution(name, spec, _needed(names, spec), request) for name, spec in specs]
     return diagrams(sources, names, units(request.units), _asked_instants(sources, request.at), request.tension_side)
 
@@ -46,6 +47,13 @@ def _require_runs(names: Sequence[str], spec: Spec) -> None:
             message = f"heun plot: sections.{name} is one cut: there is no way along it to draw a diagram over"
             hint = f"give the section from, to and count; or its loads over time: sections.{name}.M1"
             raise UsageError(Problem("bad-option", message, hint=hint))
+
+
+def _require_one_kind(specs: Sequence[Spec]) -> None:
+    """Raise UsageError where of some specs forces would be drawn, and of others the impulses of a blow."""
+    if len({spec.analysis.type == "impulse" for spec in specs}) > 1:
+        message = "heun plot: impulses of a blow (type: impulse) and forces do not stand over each other"
+        raise UsageError(Problem("bad-option", message, hint="draw them one after the other"))
 
 
 def _needed(names: Sequence[str], spec: Spec) -> list[str]:

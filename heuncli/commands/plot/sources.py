@@ -35,23 +35,31 @@ def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> 
 
 def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
     """The specs, in the order of the files and of their cases, each with its name; of one alone that is empty."""
-    specs = [pair for file in files for pair in _specs(file, request)]
+    specs = [pair for file, name in zip(files, _names(files), strict=True) for pair in _specs(file, name, request)]
     return specs if len(specs) > 1 else [("", spec) for _, spec in specs]
 
 
-def _specs(file: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
+def _names(files: Sequence[str]) -> list[str]:
+    """What files are called: nothing where there is one, without their folders and endings where that tells them."""
+    if len(files) == 1:
+        return [""]
+    stems = [PurePath(file).stem for file in files]
+    return stems if len(set(stems)) == len(stems) else list(files)
+
+
+def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Spec]]:
     """A spec as it is, or in its cases, each with its name."""
-    given, name = overrides(request.set), PurePath(file).stem
+    given = overrides(request.set)
     if request.case is None:
         yield name, load(file, overrides=given, checking=False)
     elif request.case == ALL_CASES:
         cases = load_with_cases(file, given, checking=False)[1]
         require_cases(cases)
         for case, spec in cases.items():
-            yield f"{name} {case}", spec
+            yield f"{name} {case}".lstrip(), spec
     else:
         for case in request.case.split(","):
-            yield f"{name} {case}", load(file, overrides=given, checking=False, case=case)
+            yield f"{name} {case}".lstrip(), load(file, overrides=given, checking=False, case=case)
     require_other_file(request.output, [file])
 
 

@@ -29,9 +29,10 @@ from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection, asked_by
 from heuncli.study.workflow import solve
-from heuncli.telling.keep import keep
+from heuncli.telling.keep import keep, looks_between
 from heuncli.telling.outcomes import Outcome, outcome_of
 
+DRAWN = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 BLOWS_ALONE = frozenset({"impulses"})
 EMPTY: frozenset[str] = frozenset()
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
@@ -93,7 +94,7 @@ def _solved(name: str, spec: Spec, options: Options, *, told: bool) -> Study:
     """A case with all that is told of it, and all that is expected. Raises what `solve` does, with the case's name."""
     asked = asked_by([path for item in spec.expect for path in item.paths], spec) if spec.expect else Selection(EMPTY)
     if told:
-        asked = asked.with_all(Selection(wanted_of(spec)))
+        asked = asked.with_all(Selection(wanted_of(spec) | DRAWN))
     own = replace(options, wanted=asked.reports, entries=asked.entries, time_limit=alarm.remaining(),
                   room=Room(*memory.room("table")))  # fmt: skip
     try:
@@ -120,7 +121,8 @@ def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
     page = page_of(study.results, labels, study.magnitudes)
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
-    return ReportedRun(name, title, study, keep(study, wanted_of(study.spec)), page)
+    wanted = wanted_of(study.spec)
+    return ReportedRun(name, title, study, keep(study, wanted), page, looks_between(study, wanted))
 
 
 def _given(request: ReportRequest) -> Iterator[str]:

@@ -15,6 +15,7 @@ from heuncli.commands.run.request import RunRequest
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.report.cut_runs import LOADS
+from heuncli.report.extremes_tables import NOT_SEARCHED
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
 from heuncli.report.page import page_of
@@ -34,7 +35,6 @@ from heuncli.study.workflow import solve
 if TYPE_CHECKING:
     from heuncli.study.ask.measure import MeasureRequest
 
-NOT_SEARCHED = "extremes among the samples only: too many quantities to search between them"
 AXIS: EntryKeys = ("foundation", "axis")
 AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
 

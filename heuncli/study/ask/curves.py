@@ -72,11 +72,16 @@ def held_against(study: Study, item: Expect, tolerance: float) -> CurveFound:
 
 def numbers_at(study: Study, path: str, times: Array) -> Array:
     """The number at a path at any instants of the run, (n,); nan where it is open or not known."""
+    return values_at(study, path, times).reshape(len(times))
+
+
+def values_at(study: Study, path: str, times: Array) -> Array:
+    """What stands at a path at any instants of the run, (n, ...); nan where it is open or not known."""
     instants, most = distinct(times), study.instants_at_once
     wanted = report_of(path)
     parts = (instants[i : i + most] for i in range(0, len(instants), most))
     values = np.concatenate([find(study.reports_at(t, wanted or frozenset()), path).values for t in parts])
-    return np.asarray(values.reshape(len(instants))[np.searchsorted(instants, times)])
+    return np.asarray(values[np.searchsorted(instants, times)])
 
 
 def instants_of(study: Study, curve: Curve, x: Array) -> Array:

@@ -1,0 +1,50 @@
+"""Every spec that comes with heun is drawn: a load, a coordinate, an energy; finite, and in letters, too."""
+
+from __future__ import annotations
+
+import re
+from xml.etree import ElementTree
+
+import pytest
+
+from heuncli.commands.plot.request import PlotRequest
+from heuncli.commands.plot.sources import solution
+from heuncli.drawing.layout import laid_out
+from heuncli.drawing.letters import Look, drawn
+from heuncli.drawing.picture import svg
+from heuncli.pictures.histories import history
+from heuncli.report.table_units import asked
+from heuncli.results_schema import BLOWS, EVENTS
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
+from tests.shared.folders import ROOT
+
+SPECS = sorted((ROOT / "specs").glob("*.yaml"))
+WRONG = re.compile(r"\b(?:nan|inf)\b", re.IGNORECASE)
+
+
+def paths_of(spec: Spec) -> list[str]:
+    """What is drawn of a scene."""
+    joints = [f"joints.{name}.{what}" for name in list(spec.joints)[:1] for what in ("force", "moment.z")]
+    body = next(iter(spec.bodies))
+    return [*joints, f"bodies.{body}.center.x", f"bodies.{body}.angular_velocity", "energy.kinetic"]
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("file", SPECS, ids=lambda file: file.stem)
+def test_it_is_drawn(file: str) -> None:
+    spec = load(str(file), checking=False)
+    paths = paths_of(spec)
+    source = solution("", spec, [*paths, "coordinates", BLOWS, EVENTS], PlotRequest((str(file),), quiet=True))
+    for name, numbers in list(source.study.results.coordinates.items())[:1]:
+        paths.append(f"coordinates.{name}.{next(iter(numbers))}")
+    figure = history([source], paths, asked("kN,mm,deg"))
+    text = svg(laid_out(figure))
+    root = ElementTree.fromstring(text)
+    numbers = [word for shape in root for word in re.split(r"[ ,]", shape.get("points", "")) if word]
+    assert numbers and all(-1.0 <= float(word) <= 10_000.0 for word in numbers)
+    assert not any(WRONG.search(shape.text or "") for shape in root.iter())
+    assert svg(laid_out(figure)) == text
+    for braille in (True, False):
+        lines = drawn(figure, Look(90, braille, colours=False)).splitlines()
+        assert max(map(len, lines)) <= 90 and not any(WRONG.search(line) for line in lines)

@@ -1,0 +1,211 @@
+"""`heun plot SPEC PATH...`: what the results say, read back from the picture; marks, gaps, horizons."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.pictures.thinning import STRETCHES, seen_places
+from heuncli.results import Array
+from tests.shared.command import Heun
+from tests.shared.drawn_panels import DrawnPanel, heights, read
+from tests.shared.folders import ROOT
+
+TURNING = """\
+heun: 1
+title: A wheel with a weight, driven
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  wheel: {mass: 2, center: [0.1, 0, 0], inertia: [0.01, 0.02, 0.02], points: {hub: [0, 0, 0], rim: [0.3, 0, 0]}}
+joints: {shaft: {type: pin, from: ground.O, to: wheel.hub, axis: [0, 1, 0]}}
+drives: {motor: {joint: shaft, angle: 2*pi*t}}
+analysis: {duration: 2, samples: 41}
+"""
+
+
+def spec(name: str) -> str:
+    return str(ROOT / "specs" / f"{name}.yaml")
+
+
+def drawn(heun: Heun, folder: Path, *words: str) -> list[DrawnPanel]:
+    """The panels of a picture."""
+    done = heun("plot", *words, "-o", "picture.svg", "--quiet")
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+    return read((folder / "picture.svg").read_text())
+
+
+def results(heun: Heun, *words: str) -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(heun("run", *words, "--format", "json", "--quiet").stdout)
+    return found
+
+
+def at_path(found: dict[str, Any], path: str) -> Array:
+    """The numbers at a path, of a vector the magnitude."""
+    node: Any = found
+    for word in path.split("."):
+        node = np.array(node)[:, "xyz".index(word)] if word in "xyz" else node[word]
+    values = np.array(node, dtype=np.float64)
+    return values if values.ndim == 1 else np.linalg.norm(values, axis=1)
+
+
+SHOWN = [
+    ("engine", ("joints.main.force", "joints.wrist.force", "coordinates.main.rate")),
+    ("rotor", ("joints.left.force", "joints.right.force.y", "joints.right.force.z")),
+    ("double", ("joints.pivot.force", "bodies.lower.center.x", "energy.kinetic", "energy.potential")),
+    ("ladder", ("joints.wall.force", "joints.floor.force.z")),
+]
+
+
+@pytest.mark.parametrize(("name", "paths"), SHOWN)
+def test_curves_are_the_results_to_a_pixel(heun: Heun, folder: Path, name: str, paths: tuple[str, ...]) -> None:
+    panels = drawn(heun, folder, spec(name), *paths)
+    found = results(heun, spec(name))
+    times = np.array(found["time"])
+    for path in paths:
+        (panel,) = [panel for panel in panels if path in panel.curves]
+        curve = panel.curve(path)
+        assert curve[0, 0] == pytest.approx(times[0], abs=panel.across)
+        assert curve[-1, 0] == pytest.approx(times[-1], abs=panel.across)
+        assert np.abs(heights(curve, times) - at_path(found, path)).max() <= panel.pixel, path
+
+
+def test_a_number_over_another_one_is_a_pixel_off_at_most(heun: Heun, folder: Path) -> None:
+    words = (spec("engine"), "joints.wrist.force")
+    (panel,) = drawn(heun, folder, *words, "--x", "coordinates.main.angle", "--units", "deg,kN")
+    found = results(heun, spec("engine"))
+    angle, force = np.degrees(at_path(found, "coordinates.main.angle")), at_path(found, words[1]) / 1e3
+    assert panel.label == "force [kN]"
+    assert np.abs(heights(panel.curve(words[1]), angle) - force).max() <= panel.pixel
+    assert any("24.565 at 370.2 deg" in text for text in panel.texts())
+
+
+def test_extremes_are_those_of_measures_and_stand_on_their_curves(heun: Heun, folder: Path) -> None:
+    path = "joints.wrist.force"
+    (panel,) = drawn(heun, folder, spec("engine"), path)
+    for how in ("max", "min"):
+        told = json.loads(heun("run", spec("engine"), "--measure", f"{how} {path}", "--format", "json").stdout)
+        off = np.abs(panel.marks - (told["at"], told["value"])) / (panel.across, panel.pixel)
+        assert off.max(axis=1).min() <= 0.5
+        assert any(text.startswith(f"{told['value']:.5g} at") for text in panel.texts())
+
+
+def test_paths_of_one_unit_share_a_panel(heun: Heun, folder: Path) -> None:
+    panels = drawn(heun, folder, spec("double"), "energy.kinetic", "joints.pivot.force", "energy.potential")
+    assert [panel.label for panel in panels] == ["energy [J]", "force [N]"]
+    assert panels[0].curves.keys() == {"energy.kinetic", "energy.potential"}
+
+
+def test_blows_and_events_stand_where_they_happen(heun: Heun, folder: Path) -> None:
+    found = results(heun, spec("drill"))
+    (panel,) = drawn(heun, folder, spec("drill"), "bodies.drill.position.z")
+    for name, event in found["events"].items():
+        for at in event["time"]:
+            (mark,) = panel.curves[f"{name} at {float(f'{at:.4g}'):.6g} s"]
+            assert mark[:, 0] == pytest.approx(at, abs=panel.across)
+    blows = [blow["time"] for blow in results(heun, spec("bouncing_ball"))["impulses"]]
+    ball = drawn(heun, folder, spec("bouncing_ball"), "bodies.ball.velocity.z", "bodies.ball.center.z")[0]
+    marks = [marks[0][0, 0] for name, marks in ball.curves.items() if name.startswith("floor at")]
+    assert all(np.abs(np.array(marks) - at).min() <= 3.0 * ball.across for at in blows)
+    (curve,) = ball.curves["bodies.ball.velocity.z"]
+    jump = np.flatnonzero(np.abs(curve[:, 0] - blows[0]) <= ball.across)
+    assert np.ptp(curve[jump, 1]) == pytest.approx((1.0 + 0.7) * 4.42944, abs=2.0 * ball.pixel)
+
+
+def test_nothing_is_drawn_beyond_the_horizon(heun: Heun, folder: Path) -> None:
+    words = (spec("double"), "--set", "analysis.duration=10", "--method", "RK4", "--step", "0.02")
+    horizon = results(heun, *words)["accuracy"]["horizon"]
+    path = "joints.elbow.force.x"
+    (panel,) = drawn(heun, folder, *words, path)
+    assert 0.0 < horizon < 9.0
+    curve, band = panel.curve(path), panel.areas[f"stated error of {path}"]
+    assert max(curve[:, 0].max(), band[:, 0].max()) <= horizon + panel.across
+    assert any("nothing is claimed" in text for text in panel.texts())
+    blank = panel.areas["beyond the horizon: nothing is claimed"]
+    assert blank[:, 0].min() == pytest.approx(horizon, abs=panel.across)
+    assert blank[:, 0].max() == pytest.approx(10.0, abs=panel.across)
+    assert band[:, 1].min() < curve[:, 1].min() and curve[:, 1].max() < band[:, 1].max()
+
+
+def test_of_two_runs_the_longer_one_is_drawn_to_its_end(heun: Heun, folder: Path) -> None:
+    (folder / "turning.yaml").write_text(TURNING)
+    (folder / "short.yaml").write_text(TURNING.replace("duration: 2", "duration: 1"))
+    (panel,) = drawn(heun, folder, "short.yaml", "turning.yaml", "joints.shaft.force")
+    ends = {name: lines[0][-1, 0] for name, lines in panel.curves.items()}
+    assert ends["short: joints.shaft.force"] == pytest.approx(1.0, abs=panel.across)
+    assert ends["turning: joints.shaft.force"] == pytest.approx(2.0, abs=panel.across)
+    assert not panel.areas
+
+
+def test_what_is_open_is_not_drawn_and_told(heun: Heun, folder: Path) -> None:
+    panels = drawn(heun, folder, spec("flat_four_bar"), "joints.A.force.x", "joints.A.force.z", "joints.A.moment.x")
+    assert panels[0].curves.keys() == {"joints.A.force.x"}
+    assert any("open" in text for text in panels[1].texts()) and not panels[1].curves
+    text = (folder / "picture.svg").read_text()
+    assert "open, and not drawn: joints.A.force.z, joints.A.moment.x" in text
+
+
+def test_what_is_constant_is_told_once(heun: Heun, folder: Path) -> None:
+    (folder / "turning.yaml").write_text(TURNING)
+    (panel,) = drawn(heun, folder, "turning.yaml", "coordinates.shaft.rate")
+    assert panel.texts() == ["6.2832 throughout"] and len(panel.marks) == 1
+
+
+def test_of_one_instant_each_case_is_a_mark(heun: Heun, folder: Path) -> None:
+    (panel,) = drawn(heun, folder, spec("axle_loads"), "joints.front.force", "--case", "all")
+    cases = [
+        case["joints"]["front"]["force"][0]
+        for case in results(heun, spec("axle_loads"), "--case", "all")["cases"].values()
+    ]
+    for value in np.linalg.norm(np.array(cases), axis=1):
+        assert np.abs(panel.marks[:, 1] - value).min() <= panel.pixel
+        assert f"{value:.5g}" in panel.texts()
+
+
+SPRING = """\
+heun: 1
+title: A mass let go on a stiff spring, hundreds of times up and down
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {m: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}, position: [0, 0, -1]}}
+joints: {guide: {type: slide, from: ground.O, to: m.p, axis: [0, 0, 1]}}
+forces: {spring: {type: spring, from: ground.O, to: m.p, stiffness: 40000, length: 1}}
+analysis: {duration: 15, samples: 16}
+"""
+
+
+def test_of_many_turns_none_is_lost(heun: Heun, folder: Path) -> None:
+    (folder / "spring.yaml").write_text(SPRING)
+    (panel,) = drawn(heun, folder, "spring.yaml", "coordinates.guide.travel")
+    curve = panel.curve("coordinates.guide.travel")
+    for low in np.arange(0.0, 15.0, 0.5):  # sixteen of 200/2π periods a second
+        part = curve[(curve[:, 0] >= low) & (curve[:, 0] <= low + 0.5), 1]
+        assert part.max() == pytest.approx(-1.0, abs=panel.pixel)
+        assert part.min() == pytest.approx(-1.0 - 2.0 * 9.81 / 40000.0, abs=panel.pixel)
+    assert len(curve) < 10_000
+
+
+@pytest.mark.parametrize("count", [100, 6001, 50_000, 123_457])
+def test_of_each_stretch_the_least_and_the_greatest_are_kept(count: int) -> None:
+    random = np.random.default_rng(count)
+    values = random.normal(size=count)
+    values[random.choice(count, 3)] = np.nan
+    kept = seen_places(values)
+    assert len(kept) <= min(count, 4 * STRETCHES + 1) and {0, count - 1} <= set(kept.tolist())
+    width = -(-count // STRETCHES)
+    for begin in range(0, count, 40 * width):
+        part, seen = values[begin : begin + 40 * width], kept[(kept >= begin) & (kept < begin + 40 * width)]
+        assert np.nanmax(part) == np.nanmax(values[seen]) and np.nanmin(part) == np.nanmin(values[seen])
+        assert np.isnan(part).any() == np.isnan(values[seen]).any()
+
+
+def test_the_same_bytes_every_time(heun: Heun, folder: Path) -> None:
+    found = []
+    for name in ("a.svg", "b.svg"):
+        heun("plot", spec("engine"), "joints.main.force", "--x", "coordinates.main.angle", "-o", name)
+        found.append((folder / name).read_bytes())
+    assert found[0] == found[1]

@@ -1,0 +1,103 @@
+"""What `heun plot` refuses: in one line, with a hint, and nothing is written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from heuncli.commands.plot.kinds import EVERY, KINDS
+from heuncli.commands.plot.request import PlotRequest
+from heuncli.drawing import matplotlib_file
+from tests.shared.command import HANGING, Heun
+
+SECTIONED = (
+    HANGING.replace(
+        "mass: m, center: [0, 0, -0.5], inertia: [0.08, 0.08, 0.001]",
+        "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: m}]",
+    ).replace("points: {top: [0, 0, 0]}", "points: {top: [0, 0, 0], end: [0, 0, -1]}")
+    + """\
+sections: {along: {body: bar, from: top, to: end, count: 5}}
+"""
+)
+PATH = "joints.pivot.force"
+REFUSED = [
+    ((PATH,), "no spec is named"),
+    (("hanging.yaml",), "what is to be drawn is not said"),
+    (("hanging.yaml", ""), "an empty word"),
+    (("", PATH), "no spec is named"),
+    ((".", PATH), "this is a folder"),
+    (("missing.yaml", PATH), "no such file"),
+    (("hanging.yaml", "joints.pivo.force"), "did you mean pivot?"),
+    (("hanging.yaml", "scen"), "did you mean scene?"),
+    (("hanging.yaml", "model.freedoms"), "has no instants"),
+    (("hanging.yaml", "bodies.bar.rotation"), "9 numbers"),
+    (("hanging.yaml", "title"), "is words, not a number"),
+    (("hanging.yaml", PATH, "scene"), "one kind of picture at a time"),
+    (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps in one picture"),
+    (("sectioned.yaml", "sections.along", PATH), "one kind of picture at a time"),
+    (("sectioned.yaml", "sections.along.M1"), "5 numbers"),
+    (("hanging.yaml", PATH, "--at", "0"), "--at does nothing to numbers over time"),
+    (("sectioned.yaml", "sections.along", "--x", "time"), "--x does nothing to section diagrams"),
+    (("hanging.yaml", PATH, "--tension-side"), "--tension-side does nothing"),
+    (("hanging.yaml", PATH, "--case", "all"), "the spec has no load cases"),
+    (("hanging.yaml", PATH, "--case", "cold"), "no load case 'cold'"),
+    (("hanging.yaml", PATH, "--units", "furlong"), "not a unit"),
+    (("hanging.yaml", PATH, "--x", "joints.pivot.forc"), "did you mean"),
+    (("hanging.yaml", PATH, "--with", "bench.csv"), "expected FILE:X:Y"),
+    (("hanging.yaml", PATH, "--with", "gone.csv:t:F"), "no such file"),
+    (("hanging.yaml", PATH, "--with", ".:t:F"), "this is a folder"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:t:G"), "there is no column 'G'"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:F:t"), "is a force, and what is drawn there is a time"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:t:w"), "'late' in column 3 is not a number"),
+    (("hanging.yaml", PATH, "--with", "bench.csv:1:9"), "columns are counted from 1 to 3"),
+]
+
+
+@pytest.fixture
+def files(folder: Path) -> Path:
+    (folder / "sectioned.yaml").write_text(SECTIONED)
+    (folder / "bench.csv").write_text("t [ms],F [kN],w\n0,1,2\n1,2,late\n")
+    return folder
+
+
+@pytest.mark.parametrize(("words", "said"), REFUSED)
+def test_it_is_told_in_one_line_and_nothing_is_written(
+    heun: Heun, files: Path, words: tuple[str, ...], said: str
+) -> None:
+    done = heun("plot", *words, "-o", "picture.svg")
+    first, *more = done.stderr.splitlines()
+    assert done.returncode == 2 and done.stdout == "" and not (files / "picture.svg").exists()
+    assert said in done.stderr and first.endswith("]") and all(line.startswith("  hint: ") for line in more)
+
+
+@pytest.mark.parametrize("name", ["x.bmp", "x", "", ".svg.gz"])
+def test_other_forms_of_pictures_are_refused(heun: Heun, files: Path, name: str) -> None:
+    done = heun("plot", "hanging.yaml", PATH, "-o", name)
+    assert done.returncode == 2 and "known endings: .svg, .png, .pdf" in done.stderr
+
+
+def test_without_matplotlib_it_is_said_how_to_install_it(
+    heun: Heun, files: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(matplotlib_file.importlib.util, "find_spec", lambda name: None)
+    done = heun("plot", "hanging.yaml", PATH, "-o", "x.png")
+    assert done.returncode == 2 and "heuncli[plot]" in done.stderr and not (files / "x.png").exists()
+
+
+def test_a_width_is_of_letters(heun: Heun, files: Path) -> None:
+    assert (
+        "--width is of pictures in letters" in heun("plot", "hanging.yaml", PATH, "--width", "90", "-o", "x.svg").stderr
+    )
+    assert "expected 40 to 400" in heun("plot", "hanging.yaml", PATH, "--width", "9").stderr
+
+
+def test_a_spec_is_not_written_over(heun: Heun, files: Path) -> None:
+    (files / "scene.svg").write_text((files / "hanging.yaml").read_text())
+    done = heun("plot", "scene.svg", PATH, "-o", "scene.svg")
+    assert done.returncode == 2 and (files / "scene.svg").read_text() == HANGING
+
+
+def test_every_option_is_heeded_by_some_kind_of_picture() -> None:
+    heeded = {field for kind in KINDS.values() for field in kind.heeds} | set(EVERY)
+    assert heeded == set(PlotRequest._fields)
