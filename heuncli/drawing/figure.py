@@ -52,7 +52,7 @@ class Polygon(NamedTuple):
 
 
 class Arrow(NamedTuple):
-    """An arrow, to scale, from a place by so much; name: what stands at its tip."""
+    """An arrow, to scale, from a place by so much; name: what stands at its tip; told: what a reader is told of it."""
 
     x: float
     y: float
@@ -60,6 +60,7 @@ class Arrow(NamedTuple):
     by_y: float
     pen: int | None = None
     name: str = ""
+    told: str = ""
 
 
 class Spot(NamedTuple):

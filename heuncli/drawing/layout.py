@@ -152,30 +152,36 @@ def _panel(panel: Panel, box: PanelBox, width: float) -> tuple[list[Shape], list
     field = field_of(drawn, room)
     texts, told = words(items, box, field)
     named, without_names = labelled([item for item in items if isinstance(item, Label)], box, field)
-    axes = [] if panel.bare else list(_axes(box))
-    return [*drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
+    grid, axes = ([], []) if panel.bare else _axes(box)
+    return [*grid, *drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
 
 
-def _axes(box: PanelBox) -> Iterator[Shape]:
-    """The grid with its numbers, the zero lines, the frame, and what the axes tell."""
+def _axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
+    """The grid, on which all stands; and the zero lines, the frame with its numbers, and what the axes tell."""
     most = max(2, int((box.right - box.left) / PER_TICK_X)), max(2, int((box.bottom - box.top) / PER_TICK_Y))
+    grid: list[Shape] = []
+    axes: list[Shape] = []
     for value, text in ticks(box.across, most[0]):
         x = box.x(value)
-        yield Line(((x, box.top), (x, box.bottom)), GREY if _is_zero(value, box.across) else FAINT, 0.8)
-        yield Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8)
+        is_zero = _is_zero(value, box.across)
+        (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), GREY if is_zero else FAINT, 0.8))
+        axes.append(Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8))
         if box.across.label:
-            yield Text(x, box.bottom + 16.0, shown(text), SMALL, "middle")
+            axes.append(Text(x, box.bottom + 16.0, shown(text), SMALL, "middle"))
     for value, text in ticks(box.up, most[1]):
         y = box.y(value)
-        yield Line(((box.left, y), (box.right, y)), GREY if _is_zero(value, box.up) else FAINT, 0.8)
-        yield Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end")
+        is_zero = _is_zero(value, box.up)
+        (axes if is_zero else grid).append(Line(((box.left, y), (box.right, y)), GREY if is_zero else FAINT, 0.8))
+        axes.append(Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end"))
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
-    yield Line((*corners, corners[0]), BLACK, 0.8)
+    axes.append(Line((*corners, corners[0]), BLACK, 0.8))
     if box.across.label:
-        yield Text((box.left + box.right) / 2.0, box.bottom + 34.0, shown(box.across.label), NAME, "middle")
+        middle = (box.left + box.right) / 2.0
+        axes.append(Text(middle, box.bottom + 34.0, shown(box.across.label), NAME, "middle"))
     if box.up.label:
-        middle = (box.top + box.bottom) / 2.0
-        yield Text(max(box.left - 64.0, 16.0), middle, shown(box.up.label), NAME, "middle", turned=True)
+        at = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
+        axes.append(Text(*at, shown(box.up.label), NAME, "middle", turned=True))
+    return grid, axes
 
 
 def _is_zero(value: float, scaling: Scaling) -> bool:
@@ -249,11 +255,13 @@ def _parts(
     for part in parts:
         # y to the left of x: on paper y goes down
         points = tuple((x + p * a + q * b, y + p * b - q * a) for p, q in part.points)
-        if part.fill:
-            yield Area(points, colour if part.fill == "ink" else WHITE)
-        if part.fill != "ink":
+        if part.fill == "ink":
+            yield Area(points, colour, name=name)
+        else:
+            if part.fill:
+                yield Area(points, WHITE)
             yield Line((*points, points[0]) if part.closed else points, colour, 1.2, name=name)
-            name = ""  # told once
+        name = ""  # told once
 
 
 def _label(item: Label, box: PanelBox) -> Iterator[Shape]:
@@ -271,11 +279,11 @@ def _arrow(item: Arrow, box: PanelBox) -> Iterator[Shape]:
     a, b = (x1 - x0) / length, (y1 - y0) / length
     head = min(HEAD, 0.6 * length)
     back = x1 - head * a, y1 - head * b
-    yield Line(((x0, y0), back), colour, 1.6, name=shown(item.name))
+    name = shown(item.told or item.name)
+    yield Line(((x0, y0), back), colour, 1.6, name=name)
     side = 0.4 * head
-    yield Area(
-        ((x1, y1), (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)), colour, 1.0
-    )
+    left, right = (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)
+    yield Area(((x1, y1), left, right), colour, 1.0, name)
     if item.name:
         yield Text(x1 + 5.0 * a, y1 + 5.0 * b + 4.0, shown(item.name), SMALL, "end" if a < 0.0 else "start", colour)
 
@@ -293,8 +301,10 @@ def _words(item: Words, box: PanelBox) -> Iterator[Shape]:
 def _upright(item: Upright, box: PanelBox) -> Iterator[Shape]:
     x = box.x(item.x)
     yield Line(((x, box.top), (x, box.bottom)), DIM, 0.8, (3.0, 3.0), shown(item.note or item.text))
-    if item.above:
-        yield Text(x, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
+    if item.above:  # within the picture
+        half = min(0.5 * wide(shown(item.text), SMALL) + 4.0, 0.5 * (box.right + RIGHT))
+        middle = max(half, min(x, box.right + RIGHT - half))
+        yield Text(middle, box.top - 5.0, shown(item.text), SMALL, "middle", GREY)
 
 
 def _blank(item: Blank, box: PanelBox) -> Iterator[Shape]:

@@ -50,6 +50,7 @@ ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
 PIXELS = 170.0
 DOT = 4.0  # pixels that a dot stands for where symbols are drawn in dots
 ASPECT = 2.0  # how much higher than wide a cell is
+APART = 3.0  # columns between upright strokes that belong together
 LABEL = 10  # columns left of a panel
 SHADES = "·░▒▓█"  # what is not known is blank
 PLAIN_SHADES = ".:*#@"
@@ -382,7 +383,14 @@ def _band(item: Band, canvas: Canvas) -> None:
 
 
 def _strokes(item: Strokes, canvas: Canvas) -> None:
+    """Of ordinates, which stand upright, only so many that what lies between them can be seen."""
+    last = -math.inf
     for (x0, y0), (x1, y1) in item.ends.tolist():
+        if x0 == x1:
+            column = canvas.x(x0) / canvas.per_x
+            if abs(column - last) < APART:
+                continue
+            last = column
         canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), NOBODY if item.pen is None else item.pen)
 
 

@@ -16,7 +16,7 @@ from heuncli.results import Array
 
 LINES = 4  # how many lines of text away from its place words are looked for room
 TOUCH = 1e-6  # of rounding
-PER_LINE = 4.0  # what each of them costs, in cells of a curve
+PER_LINE = 7.0  # what each of them costs, in cells of a curve
 
 
 class WordBox(NamedTuple):

@@ -13,6 +13,7 @@ const LOOKS = [
   [0.35, "glass"],
   [0, "edges"],
 ];
+const MANY_ARROWS = 40;
 const MANY_NAMES = 7;
 const MOST_BUTTONS = 8;
 const STEP = 1.15;
@@ -29,10 +30,12 @@ export class Chosen {
     this.courses = coursesOf(data);
     this.names = data.scene.bodies.length + data.scene.joints.length <= MANY_NAMES;
     this.values = true;
+    this.paths = false;
     this.look = 1;
     this.size = 1;
     const blow = data.count === 1 ? this.choices.find((choice) => choice.frame !== undefined) : null;
-    this.choice = blow ?? this.choices[0] ?? null;
+    const whole = data.scene.joints.length > MANY_ARROWS && this.choices.find((choice) => choice.key === "foundation");
+    this.choice = blow || whole || this.choices[0] || null;
     this.section =
       data.sections.find((section) => section.loads.length && section.s) ??
       data.sections.find((section) => section.loads.length) ??
@@ -47,9 +50,11 @@ export class Chosen {
     return bending.sort((a, b) => most(b) - most(a))[0] ?? this.section.loads[0];
   }
 
-  /** The load that is drawn, or null. */
-  get drawn() {
-    return this.section && this.load ? { section: this.section, load: this.load, cut: this.section.chosen ?? 0 } : null;
+  /** What is drawn of the machine beside its bodies, and how. */
+  get shown() {
+    const { names, values, paths, look, size, choice, section } = this;
+    const load = section && this.load ? { section, load: this.load, cut: section.chosen ?? 0 } : null;
+    return { names, values, paths, look, size, choice, load };
   }
 
   /** The path of the curve that is shown first: of a joint if one is known and varies, else of whatever does. */
@@ -154,6 +159,8 @@ export function listenToDrawn(chosen, player, changed) {
   };
   box("names", "names");
   box("values", "values");
+  box("paths", "paths");
+  by("pathslabel").hidden = chosen.data.count < 2;
   fill(
     by("bodies"),
     LOOKS.map(([opaque, label]) => [String(opaque), label]),

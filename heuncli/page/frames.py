@@ -26,7 +26,7 @@ TURNED = 0.3  # rad: how far a body may turn from one frame to the next
 MOST = 600  # frames, where nobody says how many
 MOST_JUMPS = 60  # whose sides are frames: knots of tables count as jumps, too
 SAME = 1e-3  # of the way from one asked instant to the next: a summit is missed by the square of it
-MOST_BYTES = 12_000_000  # of the numbers of a page, before they are text
+MOST_BYTES = 24_000_000  # of the numbers of a page, before they are text
 
 
 class PageFrames(NamedTuple):
@@ -46,7 +46,7 @@ def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
     if len(asked) < 2:
         return PageFrames(results.time[:1], ("Nothing is claimed of this motion beyond its start.",))
     limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
-    beside = _beside(study, peaks, asked, limit // 3)
+    beside = _beside(study, peaks, asked, limit - len(asked) if len(asked) < limit else limit // 3)
     room = limit - len(beside)
     told = []
     if len(asked) > room:

@@ -11,8 +11,8 @@ import { drawMachine } from "./stage.js";
 import { NumberTable } from "./table.js";
 import { View } from "./view.js";
 
-const MANY_CELLS = 400; // beyond, numbers are written less often while the machine plays
-const PAUSE = 120; // ms between these
+const AT_ONCE = 400; // cells of the table that are written at every image while the machine plays
+const PAUSE = 0.25; // ms for each cell beyond these until they are written again
 
 /** What stands above and below: the run, what is to be known of it. */
 function tellRun(data) {
@@ -28,7 +28,7 @@ function signsOf(chosen, data) {
   const parts = [];
   const { choice, section, load } = chosen;
   if (choice) {
-    if (choice.key === "foundation") parts.push("Arrow: the force of the machine on the ground.");
+    if (choice.key.startsWith("foundation")) parts.push("Arrows: what the machine exerts on the ground.");
     else if (choice.frame !== undefined) parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
     else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.");
   }
@@ -69,7 +69,7 @@ function tellCurve(course, frame) {
 function begin() {
   const data = readData(by("data").textContent);
   let waiting = false;
-  let written0 = 0;
+  let last = 0;
   let panel = null;
   const colours = { now: coloursNow() };
   const changed = () => {
@@ -84,21 +84,15 @@ function begin() {
   function draw() {
     waiting = false;
     const { frame, share } = player;
-    const { names, values, look, size, choice } = chosen;
-    drawMachine(
-      by("machine"),
-      data,
-      view,
-      { frame, share, names, values, look, size, choice, load: chosen.drawn },
-      colours.now,
-    );
+    const shown = { frame, share, ...chosen.shown };
+    drawMachine(by("machine"), data, view, shown, colours.now);
     if (data.count > 1 && chosen.course) {
       panel = drawCurve(by("curve"), data, chosen.course, frame, colours.now);
       tellCurve(chosen.course, frame);
     }
     const now = performance.now();
-    if (!player.playing || table.cells.length < MANY_CELLS || now - written0 > PAUSE) {
-      written0 = now;
+    if (!player.playing || now - last > PAUSE * (table.cells.length - AT_ONCE)) {
+      last = now;
       table.show(frame);
       by("signs").textContent = signsOf(chosen, data);
       by("machine").setAttribute("aria-label", `${data.title}, at ${instant(data.time[frame], 0)} s`);

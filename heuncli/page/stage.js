@@ -3,11 +3,14 @@
 import { cleared } from "./canvases.js";
 import { drawLoad, drawLoadScale } from "./loads.js";
 import { Painter } from "./painter.js";
+import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { words } from "./strokes.js";
 import { drawCorner, drawGroundPoint, drawJoint, drawLine } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
+
+const MANY = 40; // joints
 
 /** Where a body's name stands: the middle of what is drawn of it, body axes [m]. */
 function middleOf(body) {
@@ -38,7 +41,7 @@ function drawNames(pen, scene, poses, view, colours, told) {
 /**
  * The machine at a frame.
  * @param {HTMLCanvasElement} canvas @param {object} data @param {import("./view.js").View} view
- * @param {object} shown frame, share, look, names, values, choice (arrows or null), load (or null), size
+ * @param {object} shown the frame and what is chosen to be drawn
  */
 export function drawMachine(canvas, data, view, shown, colours) {
   const { pen, width, height } = cleared(canvas);
@@ -46,11 +49,13 @@ export function drawMachine(canvas, data, view, shown, colours) {
   const { scene } = data;
   const poses = posesAt(scene, shown.frame, shown.share);
   for (const point of scene.ground) drawGroundPoint(pen, view, point.at, colours);
+  if (shown.paths) drawPaths(pen, view, data, colours);
   const painter = new Painter(pen);
   paintBodies(painter, scene, poses, view, colours);
   painter.paint(shown.look);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
-  for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours);
+  const small = scene.joints.length > MANY;
+  for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);
   if (shown.load)
     drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);
   if (shown.names)

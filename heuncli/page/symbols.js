@@ -5,6 +5,7 @@ import { arrow, polyline, ring, shape, words } from "./strokes.js";
 import { cross, lengthOf, unit } from "./vectors.js";
 
 const R = 5.5; // pixels: radius of a joint
+const DOT = 2; // pixels: radius of one of many joints
 const STAND = 15; // pixels: from a joint to the ground that holds it
 const HALF = 12; // pixels: half of the line of ground under a joint
 const GUIDE = 0.11; // of the scene: half of a guide's rails
@@ -119,12 +120,16 @@ function drawRod(pen, joint, from, at, colours) {
   }
 }
 
-/** A joint. */
-export function drawJoint(pen, view, poses, joint, colours) {
+/** A joint. @param {boolean} small whether there are so many that symbols would hide the machine */
+export function drawJoint(pen, view, poses, joint, colours, small) {
   const from = view.project(stands(poses, joint.a, joint.p)).slice(0, 2);
   const at = view.project(stands(poses, joint.b, joint.q)).slice(0, 2);
   const axis = points(poses, joint.a, joint.axis);
   const grounded = joint.a < 0 || joint.b < 0;
+  if (small && !grounded) {
+    ring(pen, at[0], at[1], DOT, colours.paper, colours.ink, 1);
+    return;
+  }
   if (joint.kind in AT_POINT) {
     if (grounded) standing(pen, view, at, colours);
     AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);

@@ -45,7 +45,16 @@ export function arrowChoices(data) {
     { key: "joints.force", label: "forces of all joints", rows: wrench("", "force") },
     { key: "joints.moment", label: "moments of all joints", rows: wrench("", "moment") },
     ...single,
-    { key: "foundation", label: "foundation: force on the ground", rows: of("foundation.force", "foundation", onAxis) },
+    {
+      key: "foundation",
+      label: "foundation: force and moment",
+      rows: ["force", "moment"].flatMap((what) => of(`foundation.${what}`, "foundation", () => about)),
+    },
+    {
+      key: "foundation.axis",
+      label: "foundation: force on its axis",
+      rows: of("foundation.force", "foundation", onAxis),
+    },
     ...data.blows.map((blow) => ({
       key: `blow.${blow.number}`,
       label: `${blow.words}: impulses of all joints`,

@@ -42,16 +42,16 @@ class NumberCourse(NamedTuple):
     high: Peak
 
 
-def instants(study: Study) -> Array:
-    """The instants of curves, (n,) ascending, up to the horizon."""
+def instants(study: Study, most: int = MOST) -> Array:
+    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for."""
     results = study.results
     times = results.time
     if study.of_one_instant:
         return times
     looked_at = study.search_times
-    if len(looked_at) > MOST:
+    if len(looked_at) > most:
         jumps = np.flatnonzero(sides_of_jumps(looked_at))
-        some = np.linspace(0, len(looked_at) - 1, MOST).round().astype(np.intp)
+        some = np.linspace(0, len(looked_at) - 1, most).round().astype(np.intp)
         looked_at = looked_at[distinct(np.concatenate([some, jumps, jumps + 1]))]
     even = np.linspace(times[0], times[-1], ENOUGH)
     found = distinct(np.concatenate([times, looked_at, even]))

@@ -51,10 +51,11 @@ def diagrams(
     """
     panels, notes, legend = list[Panel](), list[str](), list[tuple[str, int]]()
     words = [sentence for source in sources for sentence in _words(source, at)]
-    banded = False
+    headings, banded = dict[str, dict[str, None]](), False
     for name in names:
         drawn = list(_drawn(sources, name, at))
-        words += dict.fromkeys(_heading(source, name) for source in sources)
+        for source in sources:
+            headings.setdefault(_heading(source, name), dict[str, None]())[name] = None
         for each in drawn:
             if each.name and (each.name, each.pen) not in legend:
                 legend.append((each.name, each.pen))
@@ -64,6 +65,7 @@ def diagrams(
         banded = banded or any(each.reaches for each in drawn)
     if any(isinstance(item, Blank) and item.text.endswith(OPEN) for panel in panels for item in panel.items):
         notes.append(OPEN_NOTE)
+    words += [f"{', '.join(own)}: {heading}" for heading, own in headings.items()]
     words += [BAND] * banded + [TENSION] * tension_side
     return Figure(sources[0].study.results.title, words, panels, legend, notes)
 
@@ -112,7 +114,7 @@ def _heading(source: Pictured, name: str) -> str:
     """What the diagrams of a section are of, in the words of its tables."""
     info = labels_of(source.study.spec).sections[name]
     axes = f"e1 = {info.first_axis}, e2 = n × e1; moments about {info.about}"
-    return f"{name}: what the piece of {info.body} beyond s exerts ON the part before it; N > 0 tension; {axes}"
+    return f"what the piece of {info.body} beyond s exerts ON the part before it; N > 0 tension; {axes}"
 
 
 def _sorted_out(drawn: Sequence[DrawnBar]) -> tuple[list[str], list[str]]:

@@ -10,9 +10,18 @@ import numpy as np
 from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
 from heuncli.drawing.ticks import ends, short
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import NumberCourse, Pictured, course_of, instants, require_one_number, values_at
+from heuncli.pictures.courses import (
+    NumberCourse,
+    Pictured,
+    course_of,
+    instants,
+    jumps_of,
+    require_one_number,
+    values_at,
+)
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measured_points import MeasuredPoints, seen
+from heuncli.pictures.thinning import seen_places
 from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array
@@ -25,6 +34,7 @@ SPARE = 0.12  # of what is drawn, above and below it: room for the words at extr
 STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
 OF_PATHS = 480.0  # pixels at most, of the path of a point
+MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
 ALL_OPEN = "open: the laws of rigid bodies do not give this number"
 # what is measured in a unit, as axes tell it
@@ -95,14 +105,24 @@ def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) 
     """The courses, each with its pen."""
     number = 0
     for source in sources:
-        times = instants(source.study)
+        times = instants(source.study, MOST_TIMES if over is None else MOST_OVER)
         for path in (*paths, *([] if over is None else [over])):
             require_one_number(source.study, path)
         x = times if over is None else values_at(source.study, over, times)
         for path in dict.fromkeys(paths):
             name = f"{source.name}: {path}" if source.name else path
-            yield PanelCourse(name, number, source, x, course_of(source.study, path, times))
+            course = course_of(source.study, path, times)
+            if over is None:
+                course = _thinned(course)
+            yield PanelCourse(name, number, source, course.times if over is None else x, course)
             number += 1
+
+
+def _thinned(course: NumberCourse) -> NumberCourse:
+    """A course over time with as many points as are seen, both sides of its jumps among them."""
+    jumps = np.searchsorted(course.times, jumps_of(course))
+    kept = np.unique(np.concatenate([seen_places(course.values), jumps, jumps + 1]))
+    return course._replace(times=course.times[kept], values=course.values[kept])
 
 
 def _axis_across(

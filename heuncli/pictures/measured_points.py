@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-import numpy as np
-
 from heuncli.drawing.figure import Item, Spot, Trace
 from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.thinning import seen_places
 from heuncli.results import Array
 
 MOST_SPOTS = 150  # points that are told apart; more are drawn as a line
-SEEN = 1000  # stretches of a long line, in each of which its least and its greatest are drawn
 
 
 class MeasuredPoints(NamedTuple):
@@ -30,9 +28,5 @@ def seen(points: MeasuredPoints, pen: int, size_x: float, size_y: float) -> Iter
         for a, b in zip(x.tolist(), y.tolist(), strict=True):
             yield Spot(a, b, "", pen, "square")
         return
-    if len(x) > 2 * SEEN:
-        parts = np.array_split(np.arange(len(y)), SEEN)
-        ends = [(part[np.argmin(y[part])], part[np.argmax(y[part])]) for part in parts]
-        kept = np.unique(np.array(ends))
-        x, y = x[kept], y[kept]
-    yield Trace(points.name, x, y, pen, thin=True)
+    kept = seen_places(y)
+    yield Trace(points.name, x[kept], y[kept], pen, thin=True)

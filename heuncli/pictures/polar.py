@@ -24,9 +24,10 @@ from heuncli.study.search.extremes import sides_of_jumps
 HEIGHT = 460.0  # pixels
 SLIM = 0.75  # of the longer side of a panel, what the shorter is at least
 STEPS = (30, 45, 90, 180, 360, 720, 1440, 3600)  # degrees between marks
-MOST_MARKS = 24
+MOST_MARKS = 16
 INSTANTS = 9  # marks of a run in which nothing turns on
 ROOM = (0.08, 0.04)  # of a panel's width and height: nearer to other words none are written
+CROWD = 2  # other marks within that, of which some have words
 HEADINGS = (0.2, 0.55, 0.9)  # of a curve's points: where its direction is shown
 HEADING, WIDE = 14.0, 700.0  # pixels: how long such an arrow is, and how wide a panel may be
 JUMP = 0.01  # of a panel's width: what is drawn as a jump
@@ -61,7 +62,11 @@ def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], uni
     items: list[Item] = [Spot(0.0, 0.0, "", None, "square", filled=True)]
     written: list[tuple[float, float]] = [(0.0, 0.0)]
     for curve in group:
-        items += _curve(curve, largest[curve.pen], size, unit, (x, y), written)
+        items += _curve(curve, largest[curve.pen], size, unit, (x, y))
+        own = largest[curve.pen]
+        if own is not None:
+            written.append((size * own.x, size * own.y))
+    items += _marked(group, size, (x, y), written)
     return Panel(x, y, tuple(items), HEIGHT, equal=True)
 
 
@@ -86,10 +91,9 @@ def _quantity(group: Sequence[TipCurve]) -> str:
 
 
 def _curve(
-    curve: TipCurve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling],
-    written: list[tuple[float, float]],
-) -> Iterator[Item]:  # fmt: skip
-    """A curve with its direction, its marks and its largest vector."""
+    curve: TipCurve, largest: Largest | None, size: float, unit: str, sides: tuple[Scaling, Scaling]
+) -> Iterator[Item]:
+    """A curve with its direction and its largest vector."""
     x, y = size * curve.x, size * curve.y
     yield Trace(curve.name, *_broken(curve.turning.times, x, y, sides[0].high - sides[0].low), curve.pen)
     unit_a_pixel = max((sides[0].high - sides[0].low) / WIDE, (sides[1].high - sides[1].low) / HEIGHT)
@@ -98,14 +102,23 @@ def _curve(
         yield Arrow(0.0, 0.0, size * largest.x, size * largest.y, curve.pen)
         text = f"{certain(size * largest.size, size * largest.error)} {unit}"
         yield Spot(size * largest.x, size * largest.y, text, curve.pen, "circle", filled=True)
-        written.append((size * largest.x, size * largest.y))
-    for at, text in _marks(curve.turning):
-        vector = vectors_at(curve.study, curve.path, np.array([at]))[0]
-        place = size * float(vector @ curve.plane.right), size * float(vector @ curve.plane.up)
-        if not all(map(math.isfinite, place)):
-            continue
-        free = not any(_near(place, other, sides) for other in written)
-        yield Spot(*place, text if free else "", curve.pen)
+
+
+def _marked(
+    group: Sequence[TipCurve], size: float, sides: tuple[Scaling, Scaling], written: list[tuple[float, float]]
+) -> Iterator[Spot]:
+    """The marks along curves, with words where these are not in a crowd; written: where other words stand."""
+    marks: list[tuple[int, tuple[float, float], str]] = []
+    for curve in group:
+        found = _marks(curve.turning)
+        vectors = size * vectors_at(curve.study, curve.path, np.array([at for at, _ in found]))
+        places = zip((vectors @ curve.plane.right).tolist(), (vectors @ curve.plane.up).tolist(), strict=True)
+        marks += [(curve.pen, place, text) for place, (_, text) in zip(places, found, strict=True)]
+    known = [mark for mark in marks if all(map(math.isfinite, mark[1]))]
+    for number, place, text in known:
+        crowd = sum(_near(place, other, sides) for _, other, _ in known) - 1
+        free = crowd <= CROWD and not any(_near(place, other, sides) for other in written)
+        yield Spot(*place, text if free else "", number)
         written += [place] if free else []
 
 

@@ -177,7 +177,7 @@ def _force(pull: Pull, view: View, size: float, scale: float, least: float) -> I
     x, y = (size * view.flat(pull.place)).tolist()
     by_x, by_y = (scale * view.flat(pull.vector)).tolist()
     if math.hypot(by_x, by_y) > least:
-        yield Arrow(x, y, by_x, by_y, pull.pen)
+        yield Arrow(x, y, by_x, by_y, pull.pen, told=f"force: {pull.name}")
     else:
         symbol = "toward" if float(view.depth(pull.vector)) > 0.0 else "away"
         yield Symbol(x, y, symbol, (1.0, 0.0), pull.pen, pull.name)

@@ -15,7 +15,7 @@ from heuncli.results import Array, Mask
 ADDED = 0.03  # of the largest value: what a parabola may add: 1.4 thousandths are then left, a fifth of a pixel
 
 
-class Bounds(NamedTuple):
+class CurveBounds(NamedTuple):
     """Of curves, (k,) each: the lowest and the highest; fine: whether the instants were close enough to tell."""
 
     low: Array
@@ -23,7 +23,7 @@ class Bounds(NamedTuple):
     fine: bool
 
 
-def bounds_of(times: Array, values: Array, smooth: Mask, error: float) -> Bounds:
+def bounds_of(times: Array, values: Array, smooth: Mask, error: float) -> CurveBounds:
     """The bounds of curves (n_t, k), known to an error; smooth (n_t - 1, k): where neighbours are no sides of a jump.
 
     nan is not known.
@@ -34,7 +34,7 @@ def bounds_of(times: Array, values: Array, smooth: Mask, error: float) -> Bounds
                for side, f in ((-1.0, np.min), (1.0, np.max))]  # fmt: skip
     added = np.fmax(sampled[0] - low, high - sampled[1])
     size = np.abs(np.where(np.isnan(values), 0.0, values)).max(initial=0.0)
-    return Bounds(low, high, not bool((added > max(ADDED * size, error)).any()))
+    return CurveBounds(low, high, not bool((added > max(ADDED * size, error)).any()))
 
 
 def _highest(times: Array, heights: Array, smooth: Mask) -> Array:

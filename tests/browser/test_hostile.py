@@ -77,6 +77,17 @@ def test_what_gets_into_a_page_all_the_same_is_not_run(browser: Chromium, page: 
 
 
 @pytest.mark.parametrize("title", ATTACKS)
+def test_a_title_is_text_in_a_report(title: str, browser: Chromium, tmp_path: Path) -> None:
+    spec, target = spec_with(tmp_path, title, '"><img src=x onerror=window.pwned=1>'), tmp_path / "report.html"
+    words = ("--author", title, "--project", title, "--date", title)
+    assert enter(("report", str(spec), "-o", str(target), "-q", *words)) == 0
+    with browser.open(target) as tab:
+        assert tab.faults == []
+        assert tab.evaluate("window.pwned === undefined && !document.querySelector('script, img, iframe, b')")
+        assert tab.evaluate("document.body.innerText").count("onerror=window.pwned=1") >= 1
+
+
+@pytest.mark.parametrize("title", ATTACKS)
 def test_a_picture_of_a_run_is_text_too(title: str, browser: Chromium, tmp_path: Path) -> None:
     spec, target = spec_with(tmp_path, title), tmp_path / "picture.svg"
     assert enter(("plot", str(spec), "joints.pivot.force", "-o", str(target))) == 0

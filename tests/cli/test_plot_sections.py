@@ -72,7 +72,7 @@ bodies:
   b: {shapes: [{type: rod, from: [0, 0, 0], to: [0.1, 0, 0], mass: 1}], points: {o: [0, 0], e: [0.1, 0]}}
 joints: {O: {type: pin, from: {body: ground, at: [0, 0]}, to: a.o}, E: {type: pin, from: a.e, to: b.o}}
 sections: {arm: {body: b, from: o, to: e, count: 3}}
-analysis: {duration: 4, samples: 5, tolerance: 1e-3, method: DOP853}
+analysis: {duration: 3, samples: 5, tolerance: 1e-3, method: DOP853}
 """)
     drawn = heun("plot", "wild.yaml", "sections.arm", "-o", "wild.svg")
     assert drawn.returncode == 0, drawn.stderr
@@ -85,7 +85,7 @@ analysis: {duration: 4, samples: 5, tolerance: 1e-3, method: DOP853}
         for word in panel.texts()
         if "t = " in word
     )
-    late = heun("plot", "wild.yaml", "sections.arm", "--at", "3.9", "-o", "late.svg")
+    late = heun("plot", "wild.yaml", "sections.arm", "--at", "2.9", "-o", "late.svg")
     assert late.returncode == 2
     assert "nothing is claimed" in late.stderr
     assert not (folder / "late.svg").exists()

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.pictures.thinning import STRETCHES, seen_places
 from heuncli.results import Array
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, heights, read
@@ -163,6 +164,43 @@ def test_of_one_instant_each_case_is_a_mark(heun: Heun, folder: Path) -> None:
     for value in np.linalg.norm(np.array(cases), axis=1):
         assert np.abs(panel.marks[:, 1] - value).min() <= panel.pixel
         assert f"{value:.5g}" in panel.texts()
+
+
+SPRING = """\
+heun: 1
+title: A mass let go on a stiff spring, hundreds of times up and down
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {m: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}, position: [0, 0, -1]}}
+joints: {guide: {type: slide, from: ground.O, to: m.p, axis: [0, 0, 1]}}
+forces: {spring: {type: spring, from: ground.O, to: m.p, stiffness: 40000, length: 1}}
+analysis: {duration: 15, samples: 16}
+"""
+
+
+def test_of_many_turns_none_is_lost(heun: Heun, folder: Path) -> None:
+    (folder / "spring.yaml").write_text(SPRING)
+    (panel,) = drawn(heun, folder, "spring.yaml", "coordinates.guide.travel")
+    curve = panel.curve("coordinates.guide.travel")
+    for low in np.arange(0.0, 15.0, 0.5):  # sixteen of 200/2π periods a second
+        part = curve[(curve[:, 0] >= low) & (curve[:, 0] <= low + 0.5), 1]
+        assert part.max() == pytest.approx(-1.0, abs=panel.pixel)
+        assert part.min() == pytest.approx(-1.0 - 2.0 * 9.81 / 40000.0, abs=panel.pixel)
+    assert len(curve) < 10_000
+
+
+@pytest.mark.parametrize("count", [100, 6001, 50_000, 123_457])
+def test_of_each_stretch_the_least_and_the_greatest_are_kept(count: int) -> None:
+    random = np.random.default_rng(count)
+    values = random.normal(size=count)
+    values[random.choice(count, 3)] = np.nan
+    kept = seen_places(values)
+    assert len(kept) <= min(count, 4 * STRETCHES + 1) and {0, count - 1} <= set(kept.tolist())
+    width = -(-count // STRETCHES)
+    for begin in range(0, count, 40 * width):
+        part, seen = values[begin : begin + 40 * width], kept[(kept >= begin) & (kept < begin + 40 * width)]
+        assert np.nanmax(part) == np.nanmax(values[seen]) and np.nanmin(part) == np.nanmin(values[seen])
+        assert np.isnan(part).any() == np.isnan(values[seen]).any()
 
 
 def test_the_same_bytes_every_time(heun: Heun, folder: Path) -> None:

@@ -79,8 +79,9 @@ def test_units_are_those_asked_for(heun: Heun) -> None:
     assert "force.z [kN]" in words
 
 
-def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path) -> None:
-    (folder / "even.yaml").write_text(CRANK.replace("LAW", '"2*pi*t"'))
+@pytest.mark.parametrize("way", ["", "-"])
+def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path, way: str) -> None:
+    (folder / "even.yaml").write_text(CRANK.replace("LAW", f'"{way}2*pi*t"'))
     (panel,), words = drawn(heun, "even.yaml", "polar", "joints.main")
     assert "the last turn of coordinates.main.angle, t = 2 to 3 s" in words
     assert {"0°", "90°", "180°", "270°"} <= set(words.split("\n")) and "360°" not in words.split("\n")
@@ -88,6 +89,15 @@ def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path) -> 
     assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
     assert "joints.main.force: 7.8956" in words and "N all along" in words  # no place of it is the largest
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
+
+
+def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:
+    text = CRANK.replace("axis: [0, 0, 1]", "axis: [0, 1, 2]").replace("LAW", '"10*t"')
+    (folder / "slanted.yaml").write_text(text)
+    (panel,), words = drawn(heun, "slanted.yaml", "polar", "foundation")
+    (curve,) = panel.lines("foundation.force")
+    assert np.abs(np.hypot(*curve.T) - 2 * 0.1 * 10**2).max() < panel.pixel
+    assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "across the plane" not in words
 
 
 def test_of_one_that_does_not_the_whole_run(heun: Heun, folder: Path) -> None:

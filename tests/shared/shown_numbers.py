@@ -51,8 +51,8 @@ def frames(page: Path) -> Array:
 
 def to_frame(tab: Tab, frame: int) -> None:
     """Bring a page to a frame by its slider."""
-    tab.evaluate(f"document.querySelector('#time').value = '{frame}'")
-    tab.evaluate("document.querySelector('#time').dispatchEvent(new Event('input', {bubbles: true}))")
+    change = f"(slider.value = '{frame}', slider.dispatchEvent(new Event('input', {{bubbles: true}})))"
+    tab.evaluate(f"(slider => {change})(document.querySelector('#time'))")  # at once: a page that plays moves it, too
     tab.drawn()
     assert tab.evaluate(FRAME) == frame
 
