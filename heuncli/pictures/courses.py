@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.refusals import NotDrawable
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.ask import curves
@@ -42,8 +43,26 @@ class NumberCourse(NamedTuple):
     high: Peak
 
 
+def is_claimed(study: Study) -> bool:
+    """Whether anything is claimed of a run at any of its instants: whether its horizon is behind the first."""
+    horizon = study.results.accuracy.get("horizon")
+    return study.of_one_instant or horizon is None or bool(study.results.time[0] < horizon)
+
+
+def require_claimed(study: Study) -> None:
+    """Raise NotDrawable for a run whose instants are all beyond its horizon."""
+    if not is_claimed(study):
+        horizon, first = study.results.accuracy["horizon"], study.results.time[0]
+        message = f"from t = {horizon:.6g} s on nothing is claimed, and the first instant is t = {first:.6g} s"
+        raise NotDrawable(message, "earlier instants, or a smaller --tolerance")
+
+
 def instants(study: Study, most: int = MOST) -> Array:
-    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for."""
+    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for.
+
+    Raises NotDrawable where the horizon is before all of them.
+    """
+    require_claimed(study)
     results = study.results
     times = results.time
     if study.of_one_instant:

@@ -88,7 +88,7 @@ def _require_vector(study: Study, path: str) -> None:
     if numbers.axes != (SPACE,) or not numbers.timed:
         message = f"polar {path}: a polar diagram is of a vector over the instants, and this is none"
         raise NotDrawable(message, "such as polar joints.main, or polar foundation")
-    if study.of_one_instant:
+    if study.of_one_instant or len(instants(study)) < 2:
         message = f"polar {path}: there is one instant, and so no curve"
         raise NotDrawable(message, "give the scene a motion: analysis.duration")
 
