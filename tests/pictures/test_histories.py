@@ -215,6 +215,15 @@ def test_the_same_bytes_every_time(heun: Heun, folder: Path) -> None:
     assert found[0] == found[1]
 
 
+def test_what_happens_at_one_instant_is_all_named(heun: Heun, folder: Path) -> None:
+    """Two blows at one instant in two runs: the mark has the names of both."""
+    for name in ("push", "pull"):
+        blow = f"impulses: {{{name}: {{on: wheel.rim, vector: [0, 0, 1], time: 0.5}}}}\n"
+        (folder / f"{name}.yaml").write_text(TURNING.replace("drives: {motor: {joint: shaft, angle: 2*pi*t}}\n", blow))
+    (panel,) = drawn(heun, folder, "push.yaml", "pull.yaml", "energy.kinetic")
+    assert "push, pull at 0.5 s" in panel.curves
+
+
 def test_the_whole_of_a_number_without_unit_is_told(heun: Heun, folder: Path) -> None:
     """The place of an extreme over such a number keeps all its digits: 0.501 is not 0.50."""
     (folder / "wheel.yaml").write_text(TURNING)
