@@ -388,15 +388,19 @@ def _band(item: Band, canvas: Canvas) -> None:
 
 
 def _strokes(item: Strokes, canvas: Canvas) -> None:
-    """Of ordinates, which stand upright, only so many that what lies between them can be seen."""
+    """Of ordinates, which stand upright, only so many that what lies between them can be seen.
+
+    Where curves are letters strokes are dots.
+    """
     last = -math.inf
+    number = NOBODY if item.pen is None or not canvas.look.braille else item.pen
     for (x0, y0), (x1, y1) in item.ends.tolist():
         if x0 == x1:
             column = canvas.x(x0) / canvas.per_x
             if abs(column - last) < APART:
                 continue
             last = column
-        canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), NOBODY if item.pen is None else item.pen)
+        canvas.line(canvas.x(x0), canvas.y(y0), canvas.x(x1), canvas.y(y1), number)
 
 
 def _polygon(item: Polygon, canvas: Canvas) -> None:
@@ -420,7 +424,8 @@ def _spot(item: Spot, canvas: Canvas) -> None:
 
 def _word(item: Words, canvas: Canvas) -> None:
     column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
-    canvas.write(shown(item.text), column - columns_of(shown(item.text)) // 2, row)
+    text = shown(item.text if canvas.look.braille else item.text.replace("\N{MINUS SIGN}", "-"))
+    canvas.write(text, column - columns_of(text) // 2, row)
 
 
 def _symbol(item: Symbol, canvas: Canvas) -> None:
