@@ -29,7 +29,7 @@ from heuncli.foreign_text import shown
 
 STYLE = Path(__file__).with_name("report.css")
 POLICY = "default-src 'none'; style-src 'unsafe-inline'; img-src data:"
-LONG = 26  # letters of a cell that goes on in a second line
+LONG = 34  # letters of a cell that goes on in a second line
 ALONE = ("meta", "br")  # elements that have no end
 
 

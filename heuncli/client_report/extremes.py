@@ -12,7 +12,7 @@ from heuncli.report.digits import OPEN, UNKNOWN, Style, rough, style, write_time
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Place
 from heuncli.telling.columns import position
-from heuncli.telling.envelopes import Bound, envelope
+from heuncli.telling.envelopes import Bound
 from heuncli.telling.kept import BEYOND, KeptNumber
 
 LEAST, GREATEST = "least", "greatest"
@@ -98,9 +98,8 @@ class Governing(NamedTuple):
 
 def governing(of: Reported) -> Governing:
     """Which case governs each number."""
-    rows = envelope({run.name: run.kept for run in of.runs})
-    least = {row.path: row.least for row in rows if row.least is not None}
-    greatest = {row.path: row.greatest for row in rows if row.greatest is not None}
+    least = {row.path: row.least for row in of.envelope if row.least is not None}
+    greatest = {row.path: row.greatest for row in of.envelope if row.greatest is not None}
     return Governing(least, greatest)
 
 

@@ -5,14 +5,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from heuncli.client_report.parts import Drawing, Facts, Listing, Part
+from heuncli.client_report.parts import Drawing, Facts, Listing, Part, Sentence
 from heuncli.client_report.reported import Reported
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.scenes import scene
 from heuncli.report.model_text import LISTS, facts
 from heuncli.study.workflow import describe
 
-TIMED = frozenset({"integrates"})  # how long a run takes on the machine at hand
+ASSUMED = (
+    "Bodies are rigid. Joints are ideal, without play, give or friction but for what the spec states; rods are without "
+    "mass. Nothing acts but gravity and the loads that the spec states."
+)
+BESIDE = ("names", "notes")  # of a model, what runs do without
 
 
 def drawing_parts(of: Reported) -> list[Part]:
@@ -24,10 +28,12 @@ def drawing_parts(of: Reported) -> list[Part]:
 
 
 def model_parts(of: Reported) -> list[Part]:
-    """The model, as `heun model` tells it."""
-    model: Mapping[str, Any] = describe(of.runs[0].study.spec, reduce=of.reduce)
-    parts: list[Part] = [Facts([fact for fact in facts(model) if fact[1]])]
+    """The model that was solved, in the words of `heun model`."""
+    study = of.runs[0].study
+    told = describe(study.spec, reduce=of.reduce)
+    model: Mapping[str, Any] = study.results.model | {key: told[key] for key in BESIDE}  # as it was solved
+    parts: list[Part] = [Sentence(ASSUMED), Facts([fact for fact in facts(model) if fact[1]])]
     for key, title in LISTS:
-        if key not in TIMED and model.get(key):
+        if model.get(key):
             parts.append(Listing(title, [str(sentence) for sentence in model[key]]))
     return parts

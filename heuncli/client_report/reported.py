@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cached_property
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
@@ -12,6 +13,7 @@ from heuncli.report.table_units import Units
 from heuncli.results import Results
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
+from heuncli.telling.envelopes import Enveloped, envelope
 from heuncli.telling.kept import KeptRun
 from heuncli.telling.outcomes import Outcome
 
@@ -71,6 +73,11 @@ class Reported:
     reduce: bool
     units: Units
     imprint: Imprint
+
+    @cached_property
+    def envelope(self) -> list[Enveloped]:
+        """The lowest and the highest of each number, with the cases that govern."""
+        return envelope({run.name: run.kept for run in self.runs})
 
     @property
     def labels(self) -> Labels:

@@ -16,7 +16,7 @@ from heuncli.client_report.extremes import (
     text_of,
 )
 from heuncli.client_report.load_groups import LoadGroup, LoadNumber
-from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable
+from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured
@@ -30,6 +30,8 @@ from heuncli.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 SHARE = "utilisation: the largest von Mises stress (mises) over the strength given; above 1 the section is overloaded"
 SAFE = "stresses are on the safe side where the shape of a section is not known"
 MOST_USED = "bold: the section that is used most"
+FIRST = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # what governs a section
+MOST_DIAGRAMS = 12
 NO_STRENGTH = "not given"
 
 
@@ -40,27 +42,37 @@ def section_parts(of: Reported) -> list[Part]:
 
 
 def _diagrams(of: Reported, names: list[str]) -> Iterator[Part]:
-    """A figure for each run of cuts: of the case whose stress or bending governs."""
-    for name in names:
-        if "s" not in of.runs[0].results.sections[name]:
-            continue
-        run = _governing_run(of, name)
+    """A figure for each run of cuts, of the case that governs it; of many for those that are used most."""
+    runs = [name for name in names if "s" in of.runs[0].results.sections[name]]
+    governs = {name: _governing(of, name) for name in runs}
+    most = sorted(runs, key=lambda name: governs[name].size, reverse=True)[:MOST_DIAGRAMS]
+    for name in (name for name in runs if name in most):
+        run = governs[name].run
         figure = diagrams([Pictured("", run.study)], [name], of.units)._replace(title="")
         case = f", load case {run.name}" if run.name else ""
         yield Drawing(figure, f"Section {name}{case}: the piece beyond the cut ON the part before it; N > 0 tension")
+    if len(runs) > len(most):
+        yield Sentence(f"{len(runs) - len(most)} more sections are not drawn here: heun plot SPEC sections.NAME")
 
 
-def _governing_run(of: Reported, name: str) -> ReportedRun:
+class GoverningCase(NamedTuple):
+    """The case that governs a section; size: by what sections are compared, what comes first counting more."""
+
+    run: ReportedRun
+    size: tuple[float, ...]
+
+
+def _governing(of: Reported, name: str) -> GoverningCase:
     """The case with the largest stress in a section, without stresses with the largest bending or force."""
     governs = governing(of)
-    paths = [f"sections.{name}.stress.{quantity}" for quantity in ("utilisation", "mises")]
-    paths += [f"sections.{name}.{quantity}" for quantity in ("M1", "M2", "N", "Q1", "Q2", "T")]
-    for path in paths:
-        bounds = [bound for bound in (governs.low(path), governs.high(path)) if bound is not None and bound.value]
-        if bounds:
-            largest = max(bounds, key=lambda bound: abs(bound.value))
-            return next(run for run in of.runs if run.name == largest.case)
-    return of.runs[0]
+    run, sizes = None, list[float]()
+    for path in (f"sections.{name}.{quantity}" for quantity in FIRST):
+        bounds = [bound for bound in (governs.low(path), governs.high(path)) if bound is not None]
+        largest = max(bounds, key=lambda bound: abs(bound.value), default=None)
+        sizes.append(abs(largest.value) if largest is not None else 0.0)
+        if run is None and largest is not None and largest.value:
+            run = next(one for one in of.runs if one.name == largest.case)
+    return GoverningCase(run or of.runs[0], tuple(sizes))
 
 
 def _extremes(of: Reported, names: list[str]) -> Iterator[Part]:

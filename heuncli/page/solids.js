@@ -60,19 +60,19 @@ function paintFaces(painter, surface, pose, view, { shades, edge }, opaque) {
   faces.forEach((face, f) => {
     if (!looks[f]) return;
     const points = new Array(2 * face.length);
-    const middle = [0, 0, 0];
+    let near = 0;
     for (let k = 0; k < face.length; k += 1) {
       const i = 3 * face[k];
       points[2 * k] = c[i];
       points[2 * k + 1] = c[i + 1];
-      for (let a = 0; a < 3; a += 1) middle[a] += c[i + a] / face.length;
+      near += c[i + 2] / face.length;
     }
     const drawn = [];
     for (const { i, j, beyond, edge: sharp } of sides[f]) {
       if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
     }
     const bright = Math.round(brightness(c, face, view.scale) * (SHADES - 1));
-    painter.face(middle[2], points, middle, shades[bright], drawn, edge, opaque);
+    painter.face(near, points, shades[bright], drawn, edge, opaque);
   });
 }
 

@@ -12,11 +12,8 @@ from pathlib import Path
 import pytest
 
 from heuncli.cli.entry import enter
-from heuncli.spec.load import load
 from heuncli.spec.source import read
-from heuncli.study.workflow import solve
 from tests.shared.manual import README, ROOT, TEXTS, blocks
-from tests.shared.picture import picture
 
 
 def words_of(line: str) -> list[str]:
@@ -117,8 +114,3 @@ def test_the_first_example_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     monkeypatch.setattr(sys, "stdin", io.TextIOWrapper(io.BytesIO(example.encode())))
     assert enter(["run", "-"]) == 0
     assert "A bar hangs, and swings" in capsys.readouterr().out
-
-
-def test_the_picture_shows_the_moments() -> None:
-    shaft = solve(load(str(ROOT / "specs" / "chimney.yaml"))).results.sections["shaft"]
-    assert "\n".join(picture(shaft["s"], shaft["M2"][0])) in blocks(README, "text")[0]

@@ -168,18 +168,18 @@ gravity: [0, 0, -9.81]
 ground: {points: {wall: [0, 0, 0]}}
 bodies:
   beam:
-    shapes: [{type: box, center: [0.5, 0, 0], size: [1, 0.02, 0.02], density: 7850}]
+    shapes: [{type: cylinder, from: [0, 0, 0], to: [1, 0, 0], radius: 0.01, density: 7850}]
     points: {root: [0, 0, 0], tip: [1, 0, 0]}
 joints: {wall: {type: weld, from: ground.wall, to: beam.root}}
 forces: {load: {type: force, on: beam.tip, vector: [0, 0, -F]}}
 parameters: {F: 100}
 sections:
-  along: {body: beam, from: root, to: tip, count: 5, properties: {rectangle: {width: 0.02, height: 0.02}}, strength: S}
+  along: {body: beam, from: root, to: tip, count: 5, properties: {circle: {radius: 0.01}}, strength: S}
 cases: {light: {set: {}}, heavy: {set: {F: 400}}}
 """
 
 
-@pytest.mark.parametrize(("strength", "words"), [("100 MPa", "Beyond strength: along."), ("500 MPa", "")])
+@pytest.mark.parametrize(("strength", "words"), [("100 MPa", "Beyond strength: along."), ("900 MPa", "")])
 def test_a_section_beyond_its_strength_is_said_first(heun: Heun, folder: Path, strength: str, words: str) -> None:
     (folder / "beam.yaml").write_text(OVERLOADED.replace("strength: S", f"strength: {strength}"))
     told = heun("run", "beam.yaml", "--case", "heavy", "--measure", "max sections.along.stress.utilisation", "-q")
@@ -201,3 +201,21 @@ def test_open_loads_are_said_first(heun: Heun) -> None:
     split = PageReader(heun("report", str(SPECS / "table.yaml"), "-o", "-", "--least-norm").stdout)
     assert "other splits do as well" in split.by_tag["header"][0]
     assert any(text.startswith("chosen, not certain: A Fz, B Fz") for text in split.by_tag["li"])
+
+
+def test_of_many_sections_those_are_drawn_that_govern(heun: Heun, folder: Path) -> None:
+    run = "{body: beam, from: [0.0N, 0, 0], to: tip, count: 2}"
+    many = "".join(f"  s{n:02}: {run.replace('N', f'{n:02}')}\n" for n in range(14))
+    (folder / "many.yaml").write_text(f"{OVERLOADED.partition('sections:')[0]}sections:\n{many}")
+    read = PageReader(heun("report", "many.yaml", "-o", "-").stdout)
+    drawn = [text for text in read.by_tag["figcaption"] if text.startswith("Section ")]
+    assert [text.split()[1] for text in drawn] == [f"s{n:02}:" for n in range(12)]  # the nearer to the wall the more
+    assert "2 more sections are not drawn here" in " ".join(read.by_tag["p"])
+
+
+def test_of_many_cases_those_are_told_that_govern(heun: Heun, folder: Path) -> None:
+    cases = "".join(f"  c{n}: {{set: {{F: {100 + n}}}}}\n" for n in range(13))
+    (folder / "many.yaml").write_text(f"{OVERLOADED.partition('sections:')[0]}cases:\n{cases}")
+    read = PageReader(heun("report", "many.yaml", "-o", "-").stdout)
+    assert {row[2] for row in read.rows if len(row) == 5 and row[2].startswith("c")} == {"case", "c0", "c12"}
+    assert any(note.startswith("of 13 load cases those that govern") for note in read.by_tag["li"])
