@@ -21,9 +21,9 @@ from heuncli.drawing.figure import (
     Cells,
     Figure,
     Item,
-    Label,
     Link,
     Panel,
+    PlaceLabel,
     Polygon,
     Scaling,
     Spot,
@@ -35,7 +35,7 @@ from heuncli.drawing.figure import (
 )
 from heuncli.drawing.pens import pen
 from heuncli.drawing.room import WordBox, WordField, columns_of, left_out
-from heuncli.drawing.symbols import SYMBOLS, Part, link
+from heuncli.drawing.symbols import SYMBOLS, SymbolPart, link
 from heuncli.drawing.ticks import ticks
 from heuncli.drawing.words import in_turn
 from heuncli.foreign_text import shown
@@ -258,7 +258,7 @@ def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
         draw: Callable[[Any, Canvas], None] = DRAWN[type(item)]
         draw(item, canvas)
     told = _spoken(panel.items, canvas)
-    key, unnamed = _labels([item for item in panel.items if isinstance(item, Label) and item.letter], canvas)
+    key, unnamed = _labels([item for item in panel.items if isinstance(item, PlaceLabel) and item.letter], canvas)
     told += unnamed
     if look.letters and look.braille:
         _named(panel.items, canvas)
@@ -294,7 +294,7 @@ def _spoken(items: Sequence[Item], canvas: Canvas) -> list[str]:
     return told
 
 
-def _labels(items: Sequence[Label], canvas: Canvas) -> tuple[list[str], list[str]]:
+def _labels(items: Sequence[PlaceLabel], canvas: Canvas) -> tuple[list[str], list[str]]:
     """The letters of labels, and what they stand for; what is told of those that found no room."""
     known: dict[str, None] = {}
     told: list[str] = []
@@ -307,7 +307,7 @@ def _labels(items: Sequence[Label], canvas: Canvas) -> tuple[list[str], list[str
     return wrapped(shown(", ".join(known)), canvas.look.width, 2) if known else [], told
 
 
-def _meant(label: Label) -> str:
+def _meant(label: PlaceLabel) -> str:
     """What a letter stands for, with it; a name is not told twice."""
     return label.text if label.text.startswith(f"{label.letter} ") else f"{label.letter} {label.text}"
 
@@ -451,7 +451,7 @@ def _link(item: Link, canvas: Canvas) -> None:
 
 
 def _parts(
-    parts: Sequence[Part], x: float, y: float, along: tuple[float, float], number: int | None, canvas: Canvas
+    parts: Sequence[SymbolPart], x: float, y: float, along: tuple[float, float], number: int | None, canvas: Canvas
 ) -> None:
     """The parts of a symbol about a dot, its x along a way in dots."""
     length = math.hypot(*along)
@@ -462,7 +462,7 @@ def _parts(
             canvas.line(x0, y0, x1, y1, NOBODY if number is None else number)
 
 
-def _label(item: Label, canvas: Canvas) -> None:
+def _label(item: PlaceLabel, canvas: Canvas) -> None:
     """Placed when all else is (`_labels`)."""
 
 
@@ -514,5 +514,5 @@ def _cell_at(edges: Array, share: float, scaling: Scaling) -> int:
 
 DRAWN: dict[type[Item], Callable[[Any, Canvas], None]] = {
     Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _word,
-    Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+    Symbol: _symbol, Link: _link, PlaceLabel: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
