@@ -301,10 +301,15 @@ def _labels(items: Sequence[Label], canvas: Canvas) -> tuple[list[str], list[str
     for item in items:
         column, row = round(canvas.x(item.x)) // canvas.per_x, round(canvas.y(item.y)) // canvas.per_y
         if canvas.at(shown(item.letter), column, row, NOBODY if item.pen is None else item.pen):
-            known |= {f"{item.letter} {item.text}": None} if item.letter != item.text else {}
+            known |= {_meant(item): None} if item.letter != item.text else {}
         elif not item.spare:
             told.append(item.text)
     return wrapped(shown(", ".join(known)), canvas.look.width, 2) if known else [], told
+
+
+def _meant(label: Label) -> str:
+    """What a letter stands for, with it; a name is not told twice."""
+    return label.text if label.text.startswith(f"{label.letter} ") else f"{label.letter} {label.text}"
 
 
 def _named(items: Sequence[Item], canvas: Canvas) -> None:

@@ -32,6 +32,7 @@ NODES = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
 SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
 FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is looked at first
 HALVINGS = 4
+SHORT = 64.0  # times what counts as in a plane: the first node of a longer piece is 0.038 of it from the corner
 NEWTON = 3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
 
 
@@ -108,9 +109,15 @@ class Stretch:
         return self.at_nodes(self.corners)
 
     def at_nodes(self, corners: Array) -> Cuts:
-        """The cuts at the nodes between corners, (m,) or (n_t, m)."""
+        """The cuts at the nodes between corners, (m,) or (n_t, m).
+
+        Where what moves over the body comes so near to a corner that the nodes between count as in the plane of the
+        one or the other, all of these are put to one place where nothing is: of so short a piece nothing is told.
+        """
         a, b = corners[..., :-1, None], corners[..., 1:, None]
         heights = np.where(NODES < 0.0, a + 0.5 * (b - a) * (NODES + 1.0), b - 0.5 * (b - a) * (1.0 - NODES))
+        if corners.ndim == 2:
+            heights = np.where(b - a <= SHORT * self.asked.near, in_longest(corners)[:, None, None], heights)
         heights = heights.reshape(*corners.shape[:-1], -1)
         return laid(self.asked, heights - self.height(np.zeros(1)), np.tile(SIDES, corners.shape[-1] - 1))
 
@@ -126,6 +133,13 @@ class Stretch:
         close = np.abs(asked.s - s) <= tolerances.SAME_CUT * asked.s[-1]
         same = np.flatnonzero(close & (asked.side * side >= 0.0))
         return Place(s, {BEFORE: "before", BEYOND: "beyond"}.get(side), int(same[0]) if len(same) else None)
+
+
+def in_longest(corners: Array) -> Array:
+    """The middle of the longest piece between corners (n_t, m) at each instant, (n_t,)."""
+    k = np.argmax(np.diff(corners, axis=1), axis=1)
+    rows = np.arange(len(corners))
+    return np.asarray(0.5 * (corners[rows, k] + corners[rows, k + 1]))
 
 
 def laid(asked: Cuts, s: Array, side: Array) -> Cuts:

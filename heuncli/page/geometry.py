@@ -9,13 +9,19 @@ import numpy as np
 
 from heuncli.page.packing import drawn
 from heuncli.results import Array, Results
-from heuncli.scenery.machine import GROUND, BodyLook, Machine
+from heuncli.scenery.machine import GROUND, BodyLook, Machine, machine_of
 from heuncli.scenery.poses import Poses
-from heuncli.scenery.solids import Surface
+from heuncli.scenery.solids import ROUND, Surface
 from heuncli.spec.models import Shape, Spec
 
 PARALLEL = 1e-6
+FINE, FEW = 48, 8  # faces about an axis where there are no more bodies
 REACH_FRAMES = 60  # frames by which the reach of a motion is told
+
+
+def looks_of(spec: Spec) -> Machine:
+    """What is seen of a spec: what is round is the finer the fewer bodies there are."""
+    return machine_of(spec, FINE if len(spec.bodies) <= FEW else ROUND)
 
 
 class Topologies:
@@ -67,20 +73,21 @@ def _triple(vector: Array) -> list[float]:
 def _body(body: BodyLook, shapes: Sequence[Shape], results: Results, kinds: Topologies) -> dict[str, Any]:
     """A body: its poses, its surfaces or lines, its points, in its own axes."""
     pose = results.bodies[body.name]
-    seen = [shape for shape in shapes if shape.type != "point"]  # each has one surface
+    seen = [None] if body.spread else [shape for shape in shapes if shape.type != "point"]  # each has one surface
     return {
         "name": body.name,
         "places": drawn(pose["position"]),
         "attitudes": drawn(pose["quaternion"]),
         "surfaces": [_surface(s, shape, kinds) for s, shape in zip(body.surfaces, seen, strict=True)],
         "lines": [drawn(line) for line in body.lines],
+        "spread": body.spread,
         "points": [{"name": name, "at": _triple(point)} for name, point in body.points.items()],
     }
 
 
-def _surface(surface: Surface, shape: Shape, kinds: Topologies) -> dict[str, Any]:
+def _surface(surface: Surface, shape: Shape | None, kinds: Topologies) -> dict[str, Any]:
     """Corners and faces; of a sphere no more than what it is: it is round from everywhere."""
-    if shape.type == "sphere":
+    if shape is not None and shape.type == "sphere":
         return {"ball": {"center": _triple(np.array(shape.center)), "radius": float(shape.radius or 0.0)}}
     return {"corners": drawn(surface.corners), "faces": kinds.number(surface.faces)}
 

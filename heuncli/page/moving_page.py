@@ -10,7 +10,7 @@ import numpy as np
 from heuncli.foreign_text import shown
 from heuncli.page.cuts import sections_of
 from heuncli.page.frames import MOST, PageFrames, frames_of, results_at
-from heuncli.page.geometry import scene_of
+from heuncli.page.geometry import looks_of, scene_of
 from heuncli.page.inlined import whole_page
 from heuncli.page.number_rows import blocks_of, blow_tables
 from heuncli.page.packing import packed
@@ -22,13 +22,12 @@ from heuncli.report.labels import Labels, labels_of
 from heuncli.report.table_plans import SECTIONS
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Results
-from heuncli.scenery.machine import machine_of
 from heuncli.scenery.poses import poses_in
 from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
 MOST_BLOWS = 12  # whose numbers are listed
-TELLING = ("stiff", "rest", "split", "status", "warning")  # lines of a heading that are told at once
+TELLING = ("stiff", "split", "status", "warning")  # lines of a heading that are told at once
 
 
 def moving_page(study: Study, units: Units, most: int = MOST) -> str:
@@ -55,7 +54,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
         "time": packed(frames.times),
         "marks": list(_marks(own, frames)),
         "length": list(units.of("m")),
-        "scene": scene_of(machine_of(spec), spec, results, poses_in(results)),
+        "scene": scene_of(looks_of(spec), spec, results, poses_in(results)),
         "blocks": blocks_of(results, labels, certain),
         "blows": list(_blows(own, frames, labels, certain)),
         "sections": sections_of(spec, results, labels, certain),

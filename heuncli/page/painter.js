@@ -1,6 +1,7 @@
 /** @file What is nearer hides what is farther: faces, balls and lines, gathered, then painted, the farthest first. */
 
-const WIDER = 0.35; // pixels: how far beyond its corners a face is painted, so that no seam shows beside it
+const WIDER = 0.4; // pixels: how far beyond its sides a face is painted, so that no seam shows between two
+const SHARPEST = 0.3; // where two sides meet in a point, that does not stand out farther
 
 /**
  * @typedef {object} Item
@@ -15,14 +16,26 @@ function round(pen, points) {
   for (let k = 2; k < points.length; k += 2) pen.lineTo(points[k], points[k + 1]);
 }
 
-/** Move the corners of a polygon out from its middle. */
-function widen(points, x, y) {
-  for (let k = 0; k < points.length; k += 2) {
-    const [dx, dy] = [points[k] - x, points[k + 1] - y];
-    const size = Math.sqrt(dx * dx + dy * dy) || 1;
-    points[k] += (WIDER * dx) / size;
-    points[k + 1] += (WIDER * dy) / size;
+/** The direction out of a polygon that looks at the viewer, across one of its sides; of unit length. */
+function outOf(points, k, next) {
+  const [dx, dy] = [points[next] - points[k], points[next + 1] - points[k + 1]];
+  const size = Math.sqrt(dx * dx + dy * dy) || 1;
+  return [-dy / size, dx / size];
+}
+
+/** A polygon whose sides are moved out. @param {number[]} points */
+function widened(points) {
+  const n = points.length;
+  const found = new Array(n);
+  let [ax, ay] = outOf(points, n - 2, 0);
+  for (let k = 0; k < n; k += 2) {
+    const [bx, by] = outOf(points, k, (k + 2) % n);
+    const share = WIDER / Math.max(SHARPEST, 1 + ax * bx + ay * by);
+    found[k] = points[k] + share * (ax + bx);
+    found[k + 1] = points[k + 1] + share * (ay + by);
+    [ax, ay] = [bx, by];
   }
+  return found;
 }
 
 /** Fill what was gone round, as opaque as bodies are. */
@@ -45,16 +58,16 @@ export class Painter {
 
   /**
    * A face with some of its sides drawn.
-   * @param {number} near @param {number[]} points @param {number[]} middle @param {string} fill
+   * @param {number} near @param {number[]} points @param {string} fill
    * @param {number[]} sides pieces of line: from right, down, to right, down, ... @param {string} line
+   * @param {number} own how opaque it is itself, 0 to 1
    */
-  face(near, points, [x, y], fill, sides, line) {
-    widen(points, x, y);
+  face(near, points, fill, sides, line, own) {
     this.items.push({
       near,
       paint: (pen, opaque) => {
-        round(pen, points);
-        filled(pen, fill, opaque);
+        round(pen, own * opaque === 1 ? widened(points) : points);
+        filled(pen, fill, own * opaque);
         if (!sides.length) return;
         pen.beginPath();
         for (let k = 0; k < sides.length; k += 4) {

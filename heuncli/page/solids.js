@@ -2,10 +2,12 @@
 
 import { SHADES, tints } from "./colours.js";
 import { stands } from "./poses.js";
-import { armsOf, sidesOf } from "./surfaces.js";
+import { sidesOf } from "./surfaces.js";
 
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
+const ARM = 2; // pixels: a line from a body's shapes to a point that lies off them
+const LIGHT_AS_AIR = 0.3; // how opaque an ellipsoid is that stands for a body's inertia
 const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
 /**
@@ -50,7 +52,7 @@ function areaOf(c, face) {
 }
 
 /** The faces of a surface that look at the viewer, with the edges between them and at the outline. */
-function paintFaces(painter, surface, pose, view, { shades, edge }) {
+function paintFaces(painter, surface, pose, view, { shades, edge }, opaque) {
   const { faces } = surface;
   const sides = sidesOf(surface);
   const c = seen(surface.corners, pose, view);
@@ -58,19 +60,19 @@ function paintFaces(painter, surface, pose, view, { shades, edge }) {
   faces.forEach((face, f) => {
     if (!looks[f]) return;
     const points = new Array(2 * face.length);
-    const middle = [0, 0, 0];
+    let near = 0;
     for (let k = 0; k < face.length; k += 1) {
       const i = 3 * face[k];
       points[2 * k] = c[i];
       points[2 * k + 1] = c[i + 1];
-      for (let a = 0; a < 3; a += 1) middle[a] += c[i + a] / face.length;
+      near += c[i + 2] / face.length;
     }
     const drawn = [];
     for (const { i, j, beyond, edge: sharp } of sides[f]) {
       if (sharp || !looks[beyond]) drawn.push(c[i], c[i + 1], c[j], c[j + 1]);
     }
     const bright = Math.round(brightness(c, face, view.scale) * (SHADES - 1));
-    painter.face(middle[2], points, middle, shades[bright], drawn, edge);
+    painter.face(near, points, shades[bright], drawn, edge, opaque);
   });
 }
 
@@ -103,12 +105,12 @@ export function paintBodies(painter, scene, poses, view, colours) {
         const [x, y, near] = view.project(stands(poses, k, surface.ball.center));
         painter.ball(near, x, y, surface.ball.radius * view.scale, own.shades, own.edge);
       } else {
-        paintFaces(painter, surface, poses[k], view, own);
+        paintFaces(painter, surface, poses[k], view, own, body.spread ? LIGHT_AS_AIR : 1);
       }
     }
-    for (const line of armsOf(scene, k)) {
-      paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, 2));
+    for (const line of body.lines) {
+      if (body.surfaces.length === 0) paintBars(painter, line, poses[k], view, own);
+      else paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, ARM));
     }
-    for (const line of body.lines) paintBars(painter, line, poses[k], view, own);
   });
 }

@@ -15,7 +15,8 @@ const MANY = 40; // joints
 /** Where a body's name stands: the middle of what is drawn of it, body axes [m]. */
 function middleOf(body) {
   if (body.middle) return body.middle;
-  const clouds = [...body.surfaces.map((surface) => surface.ball?.center ?? surface.corners), ...body.lines];
+  const solid = body.surfaces.map((surface) => surface.ball?.center ?? surface.corners);
+  const clouds = solid.length ? solid : body.lines;
   const sum = [0, 0, 0];
   let count = 0;
   for (const cloud of clouds) {

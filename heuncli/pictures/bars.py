@@ -99,8 +99,15 @@ class Edges(NamedTuple):
         ends = [..., [0, DEGREE]]
         s = section["s"].reshape(len(section["s"]), -1, DEGREE + 1)[*ends]
         values = np.stack([section[name].reshape(*s.shape[:2], DEGREE + 1)[*ends] for name in RESULTANTS])
-        moves = np.ptp(s, axis=0) > 0.0
+        s = np.where(s[..., 1:] > s[..., :1], s, np.nan)  # where it stands at a corner there is nothing beside it
+        known = np.isfinite(s)
+        moves = np.max(np.where(known, s, -np.inf), axis=0) > np.min(np.where(known, s, np.inf), axis=0)
         return cls(s[:, moves], values[:, :, moves], np.broadcast_to(SIDES[[0, DEGREE]], s.shape[1:])[moves])
+
+    @property
+    def turns(self) -> list[float]:
+        """The first and the last place at which any of them stands, if one moves."""
+        return [float(f(self.s)) for f in (np.nanmin, np.nanmax)] if self.s.size else []
 
     def passes(self, places: Array, near: float) -> Mask:
         """Between which neighbouring instants a load passes places (k,), or comes so near to them, (n_t - 1, k)."""
@@ -156,7 +163,7 @@ class WholeBar:
     @property
     def struck(self) -> bool:
         """Whether impulses are told of it, of a scene that is nothing but a blow."""
-        return self.study.spec.analysis.type == "impulse"
+        return self.study.spec.analysis.type == "impulse" and bool(self.study.results.impulses)
 
     @cached_property
     def certain(self) -> Certainty:
@@ -217,7 +224,7 @@ class WholeBar:
     def at(self, at: float) -> dict[str, AlongBar]:
         """All quantities along the bar at an instant."""
         nodes = self.block(self.setup.cuts[0], at)
-        s, side = places(corners_of(nodes["s"]), self.near)
+        s, side = places(corners_of(nodes["s"], self.near), self.near)
         told = self.block(laid(self.stretch.asked, s, side), at)
         found = {}
         for name in RESULTANTS:
@@ -264,7 +271,7 @@ class WholeBar:
             nodes = self.study.reports_at(times, SECTIONS, self.setup).sections[self.name]
             jumps = extremes.sides_of_jumps(times)
             moving = Edges.of(nodes)
-            turns = np.array([] if moving is None else [f(moving.s) for f in (np.min, np.max)])
+            turns = np.array([] if moving is None else moving.turns)
             corners = self.stretch.corners - float(self.stretch.height(np.array(0.0)))
             s, side = places(np.sort(np.append(corners, turns)), self.near, more)
             smooth = np.broadcast_to(~jumps[:, None], (len(jumps), len(s)))
@@ -285,15 +292,16 @@ class WholeBar:
         return s, low, high
 
 
-def corners_of(nodes: Array) -> Array:
-    """Where along a bar the pieces of a stretch with these nodes (9 m,) begin, and the last ends, (m + 1,)."""
+def corners_of(nodes: Array, near: float) -> Array:
+    """Where along a bar the pieces of a stretch with nodes (9 m,) begin, and the last ends; without short ones."""
     pieces = nodes.reshape(-1, DEGREE + 1)
+    pieces = pieces[pieces[:, -1] - pieces[:, 0] > near]
     return np.append(pieces[:, 0], pieces[-1, -1])
 
 
 def between_nodes(nodes: Array, s: Array, side: Array) -> Array:
     """What leads from values at the nodes (9 m,) of a stretch to those at places (k,) on their sides: (9 m, k)."""
-    corners = corners_of(nodes)
+    corners = corners_of(nodes, 0.0)
     first, last = (np.searchsorted(corners[1:-1], s, side=way) for way in ("right", "left"))
     piece = np.where(side == BEFORE, last, first)
     a, b = corners[piece], corners[piece + 1]

@@ -142,21 +142,22 @@ def _headings(x: Array, y: Array, number: int, length: float) -> Iterator[Arrow]
 
 
 def _marks(turning: TurningRun) -> list[tuple[float, str]]:
-    """Instants that are marked along curves, and what is written there: angles, or the instants themselves."""
+    """Instants that are marked along curves, ascending, and what is written there: angles, or the instants."""
     times = turning.times
     if not turning.path:
         scaling = Scaling("", float(times[0]), float(times[-1]))
         return [(min(max(t, times[0]), times[-1]), f"{text} s") for t, text in ticks(scaling, INSTANTS)]
     counted = turning.counted
     low, high = sorted((float(counted[0]), float(counted[-1])))
-    step = next((step for step in STEPS if (high - low) / step <= MOST_MARKS), STEPS[-1])
+    many = math.ceil((high - low) / STEPS[-1] / MOST_MARKS)
+    step = next((step for step in STEPS if (high - low) / step <= MOST_MARKS), STEPS[-1] * many)
     whole = 360.0 * turning.turns
     marked = [step * k for k in range(math.ceil(low / step - 1e-6), math.floor(high / step + 1e-6) + 1)]
     marked = [degrees for degrees in marked if not turning.turns or degrees < low + whole - 1e-3]
     order = slice(None) if counted[-1] > counted[0] else slice(None, None, -1)
     at = np.interp(marked, counted[order], times[order])
     names = [degrees % whole if whole else degrees for degrees in marked]
-    return [(float(t), f"{degrees:g}°") for t, degrees in zip(at, names, strict=True)]
+    return sorted((float(t), f"{degrees:g}°") for t, degrees in zip(at, names, strict=True))
 
 
 def _near(place: tuple[float, float], other: tuple[float, float], sides: tuple[Scaling, Scaling]) -> bool:

@@ -22,6 +22,7 @@ from heuncli.results import Array, Indices
 
 VISIBLE = 0.004  # of a panel's height: below, the band of an error is not seen
 MARKED = 40  # points of a curve that are marked, at most
+POINTS = ("circle", "square", "triangle", "diamond", "tip", "bow")
 FEW_LEVELS = 3  # of the second of two variables: these are curves, no field
 MOST_CELLS = 40_000
 MOST_SPOTS = 1_500
@@ -73,7 +74,8 @@ def _curves(own: PickedTable, units: Units) -> Drawn:
         for number, (name, rows) in enumerate(groups):
             order = rows[np.argsort(across.values[rows], kind="stable")]
             own_x, values = across.values[order], size * measure.values[order]
-            items += _curve(name or measure.text, own_x, values, size * measure.errors[order], y, number)
+            if not across.texts:  # between names there is nothing
+                items += _curve(name or measure.text, own_x, values, size * measure.errors[order], y, number)
             items += _points(across, measure, size, order, number, marked=len(groups) == 1)
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
@@ -131,9 +133,10 @@ def _points(
         text = f"{certain(float(values[k]), float(errors[k]))} at {across.word(x[k])}"
         yield Spot(float(x[k]), float(values[k]), text, number, filled=True)
     alone = [k for k in known.tolist() if np.isfinite(values[max(k - 1, 0) : k + 2]).sum() == 1]
-    for k in known.tolist() if len(x) <= MARKED else alone:
+    shape = POINTS[number % len(POINTS)] if across.texts else POINTS[0]
+    for k in known.tolist() if len(x) <= MARKED or across.texts else alone:
         if k not in best:
-            yield Spot(float(x[k]), float(values[k]), "", number)
+            yield Spot(float(x[k]), float(values[k]), "", number, shape)
 
 
 def _bars(own: PickedTable, units: Units) -> Drawn:

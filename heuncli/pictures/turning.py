@@ -20,6 +20,7 @@ from heuncli.study.ask.curves import numbers_at
 from heuncli.study.ask.study import Study
 
 TURN = 2.0 * math.pi
+LEAST = 0.25 * TURN  # what turns less is no crank
 SAME = 2e-3  # of the largest vector: a pixel of the picture
 CLOSELY = 721  # instants of what is drawn
 COMPARED = 128  # angles of a cycle at which it is held against the one before
@@ -68,11 +69,11 @@ def angles_of(spec: Spec) -> list[str]:
 
 def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> TurningRun:
     """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
-    whole = TurningRun(times, "", np.zeros(0), 0)
+    whole, farthest = TurningRun(times, "", np.zeros(0), 0), LEAST
     for path in candidates:
         angles = numbers_at(study, path, times)
-        if np.isfinite(angles).all() and (goes_on(angles) and span(angles) > span(whole.angles)):
-            whole = TurningRun(times, path, angles, 0)
+        if np.isfinite(angles).all() and goes_on(angles) and span(angles) > farthest:
+            whole, farthest = TurningRun(times, path, angles, 0), span(angles)
     for turns in (1, 2):
         if whole.path and comes_back(study, whole, turns, vectors_at):
             return last_of(study, whole, turns)

@@ -96,8 +96,8 @@ def test_cases_and_specs_over_each_other(bars: Path, heun: Heun) -> None:
     done = heun("plot", "cases.yaml", "sections.along", "--case", "all", "-o", "all.svg")
     assert done.returncode == 0, done.stderr
     (moment,) = [panel for panel in read((bars / "all.svg").read_text()) if panel.label.startswith("M1")]
-    assert {"cases light: M1", "cases heavy: M1"} <= set(moment.curves)
-    light, heavy = (moment.curve(f"cases {name}: M1")[:, 1] for name in ("light", "heavy"))
+    assert {"light: M1", "heavy: M1"} <= set(moment.curves)
+    light, heavy = (moment.curve(f"{name}: M1")[:, 1] for name in ("light", "heavy"))
     assert heavy.min() < light.min()
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.cli.measure import measured, parse
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import panels_of
 from tests.shared.drawn_panels import edges, heights, upright_at
@@ -52,7 +53,17 @@ def test_the_corner_is_where_the_load_stands(crossing: Study, a: float) -> None:
 
 
 def test_the_envelope_is_that_of_the_influence_lines(crossing: Study) -> None:
-    shown = panels_of(crossing, "along")
+    require_influence_lines(crossing)
+
+
+def test_however_quickly_it_crosses() -> None:
+    """In a fiftieth of the run, where few instants are looked at."""
+    require_influence_lines(study(SCENE.replace("DRIVE", f"{L / 2.0}*(1 + tanh(200*(t - 1)))")))
+
+
+def require_influence_lines(run: Study) -> None:
+    """Assert that the bands are those of all places of the load."""
+    shown = panels_of(run, "along")
     for name, low, high in (("Q1", -P * (1.0 - S / L), P * S / L), ("M2", 0.0 * S, P * S * (L - S) / L)):
         found = edges(shown[name].areas[f"lowest and highest of {name}"], S)
         assert np.abs(found[0] - low).max() <= shown[name].pixel
@@ -70,3 +81,22 @@ def test_the_envelope_ends_where_the_load_turns() -> None:
     apart = np.minimum(np.abs(S - 1.0), np.abs(S - 3.0)) > 2.0 * shear.across
     assert np.abs(low - least)[apart].max() <= shear.pixel
     assert np.abs(high - most)[apart].max() <= shear.pixel
+
+
+def test_a_trolley_that_stands_still() -> None:
+    """Nothing passes any place then: the band is the curve, with its corner where the trolley stands."""
+    shown = panels_of(study(SCENE.replace("DRIVE", "1.5 + 0*t")), "along")
+    moment = shown["M2"]
+    exact = np.where(S < 1.5, P * S * (L - 1.5) / L, P * 1.5 * (L - S) / L)
+    assert np.abs(heights(moment.curve("M2"), S) - exact).max() <= 0.5 * moment.pixel
+    for found in edges(moment.areas["lowest and highest of M2"], S):
+        assert np.abs(found - exact).max() <= moment.pixel
+
+
+@pytest.mark.parametrize("drive", [f"{L / 2.0}*(1 + tanh(200*(t - 1)))", f"{L / 2.0}*t", f"{L / 2.0}*(1 - cos(pi*t))"])
+def test_no_shear_is_larger_than_the_load(drive: str) -> None:
+    """Nor where it comes to a support, or begins there: the extremes searched along the beam and in time."""
+    run = study(SCENE.replace("DRIVE", drive))
+    for how in ("min", "max"):
+        assert abs(measured(parse(f"{how} sections.along.Q1"), run)[0].value) == pytest.approx(P, rel=1e-9)
+    assert measured(parse("max sections.along.M2"), run)[0].value == pytest.approx(P * L / 4.0, rel=1e-9)

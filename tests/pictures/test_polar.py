@@ -100,6 +100,13 @@ def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:
     assert "directions 1 and 2 are (1, 0, 0) and (0, 0.8944, -0.4472)" in words and "across the plane" not in words
 
 
+def test_where_little_turns_instants_are_marked(heun: Heun, folder: Path) -> None:
+    (folder / "little.yaml").write_text(CRANK.replace("LAW", '"0.1*t**2 + 0.2"'))
+    (panel,), words = drawn(heun, "little.yaml", "polar", "foundation")
+    assert {"2.0 s", "2.5 s"} <= set(words.split("\n")) and "°\n" not in words
+    assert len(panel.spots(filled=False)) >= 5
+
+
 def test_of_one_that_does_not_the_whole_run(heun: Heun, folder: Path) -> None:
     (folder / "faster.yaml").write_text(CRANK.replace("LAW", '"2*pi*t**2/3"'))
     (panel,), words = drawn(heun, "faster.yaml", "polar", "foundation")

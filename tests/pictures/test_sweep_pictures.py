@@ -114,6 +114,16 @@ def test_bars_over_names(heun: Heun) -> None:
     assert {case for case, _ in rows} <= set(words)
 
 
+def test_between_names_there_are_no_lines(heun: Heun) -> None:
+    axles = str(SPECS / "axle_loads.yaml")
+    heun("sweep", axles, "case=all", "h=0.3,0.9", "--measure", "joints.front.force.z", "-q", "-o", "s.csv")
+    (panel,), words = drawn(heun, "s.csv", "case")
+    assert not panel.lines("h = 0.3") and {"h = 0.3", "h = 0.9", "braking"} <= set(words)
+    assert len(panel.spots(filled=False)) == 4  # of the first; the second has squares
+    (panel,), _ = drawn(heun, "s.csv", "h")
+    assert len(panel.lines("case = braking")) == 1
+
+
 def test_more_variables_are_curves_or_are_held(heun: Heun, swept: Heun) -> None:
     swept("m=1:3/5", "g=1:9/5", "bodies.bar.center.2=-0.5,-0.4", *FORCE)
     done = heun("plot", "s.sqlite", "-o", "drawn.svg")

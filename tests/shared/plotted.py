@@ -87,7 +87,7 @@ def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
         under = numbers(root, "middle", lambda x, y, at=bottom: (x, abs(y - at - BELOW) < 0.1))
         beside = numbers(root, "end", lambda x, y, at=left: (y - BASE, abs(x - at + BESIDE) < 0.1))
         upward = {place: value for place, value in beside.items() if top - 1.0 <= place <= bottom + 1.0}
-        if not upward:
+        if not upward and not under:
             continue  # a body that is drawn as a box, and no panel
         y = axis(upward)
         x = axis(under) if not equal or len(under) > 1 else through(under, -y.step)

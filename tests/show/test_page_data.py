@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 
 from heuncli.commands.show.command import REPORTS
+from heuncli.page.geometry import looks_of
 from heuncli.page.moving_page import moving_page
 from heuncli.page.number_rows import ZEROS
 from heuncli.report.export import to_json
 from heuncli.report.table_units import Units
 from heuncli.results import Array
 from heuncli.results_schema import leading_key
-from heuncli.scenery.machine import machine_of
 from heuncli.scenery.poses import poses_of
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import peak
@@ -114,7 +114,7 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
     scene, count = data["scene"], data["count"]
-    poses, machine = poses_of(study, unpacked(data["time"], count)), machine_of(study.spec)
+    poses, machine = poses_of(study, unpacked(data["time"], count)), looks_of(study.spec)
     half, center = np.array(scene["half"]), np.array(scene["center"])
     for body, look in zip(scene["bodies"], machine.bodies, strict=True):
         at = places(body["places"]).reshape(count, 3)
@@ -136,7 +136,7 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
-    machine, poses = machine_of(study.spec), poses_of(study, study.results.time)
+    machine, poses = looks_of(study.spec), poses_of(study, study.results.time)
     for section in data["sections"]:
         block, name = study.results.sections[section["name"]], machine.bodies[section["body"]].name
         if study.spec.sections[section["name"]].reduce_to == "at":

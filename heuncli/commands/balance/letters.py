@@ -21,11 +21,11 @@ def draw(found: BalanceResults, width: int) -> str:
         if name not in found.orders:
             continue
         rows = [row for row in found.orders[name] if row.order in field]
-        largest = max((row.size for row in found.orders[name]), default=0.0)
+        largest = max((row.reach for row in found.orders[name]), default=0.0)
         for row in rows:
-            if row.size <= 10.0**-DECADES * largest:
+            if row.reach <= 10.0**-DECADES * largest:
                 continue
-            at = round((1.0 + math.log10(row.size / largest) / DECADES) * (room - 1))
+            at = round((1.0 + math.log10(row.reach / largest) / DECADES) * (room - 1))
             own = field[row.order]
             own[at] = letter if own[at] == " " else SEVERAL
     if not field:

@@ -24,8 +24,8 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     """The figure. Raises UsageError, SpecError and what solving raises."""
     paths = [*asked.paths, *([] if request.x is None else [request.x])]
     specs = specs_of(asked.files, request)
-    for _, spec in specs:
-        measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
+    for name, spec in specs:
+        measure.check([MeasureRequest("", path) for path in paths], spec, f"heun plot {name}".rstrip())
     points = _points(asked, request, specs[0][1])
     needed = [*paths, BLOWS, EVENTS]  # these are marked
     sources = [solution(name, spec, needed, request) for name, spec in specs]

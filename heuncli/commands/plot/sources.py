@@ -18,6 +18,7 @@ from heuncli.records import replace
 from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
+from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
@@ -43,7 +44,7 @@ def _names(files: Sequence[str]) -> list[str]:
     """What files are called: nothing where there is one, without their folders and endings where that tells them."""
     if len(files) == 1:
         return [""]
-    stems = [PurePath(file).stem for file in files]
+    stems = ["standard input" if file == STANDARD_INPUT else PurePath(file).stem for file in files]
     return stems if len(set(stems)) == len(stems) else list(files)
 
 

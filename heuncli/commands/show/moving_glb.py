@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
+from heuncli.page.geometry import looks_of
 from heuncli.pictures.courses import instants
 from heuncli.scenery.gltf import binary
-from heuncli.scenery.machine import machine_of
 from heuncli.scenery.poses import poses_of, up_of
 from heuncli.study.ask.study import Study
 from heuncli.study.search.instants import turned_between
@@ -23,4 +23,4 @@ def moving_glb(study: Study) -> bytes:
         if turned > TORN:
             study.later_warnings[TOLD.format(math.degrees(turned))] = None
     poses = poses_of(study, times)
-    return binary(machine_of(study.spec), poses, up_of(study.spec, poses))
+    return binary(looks_of(study.spec), poses, up_of(study.spec, poses))

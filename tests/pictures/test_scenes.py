@@ -1,0 +1,157 @@
+"""Every worked example as a scene, in pixels and in letters: every number known; what is said of it, what is not."""
+
+from __future__ import annotations
+
+import re
+import xml.etree.ElementTree as tree
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from heuncli.drawing.figure import Figure, Label, Polygon, Strokes
+from heuncli.drawing.layout import laid_out
+from heuncli.drawing.letters import drawn, look_of
+from heuncli.drawing.picture import Text, svg
+from heuncli.drawing.words import HIGH, wide
+from heuncli.pictures.courses import Pictured
+from heuncli.pictures.scenes import as_assembled, scene
+from heuncli.report.table_units import Units
+from heuncli.spec.load import load
+from heuncli.study.model.options import Options
+from heuncli.study.workflow import solve
+from tests.shared.scenes import study
+
+SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
+REPORTS = frozenset({"motion", "joints", "impulses"})
+HOSTILE = '<script>alert(1)</script> & "x" \\u202e]]> 😀'
+POINT = """\
+heun: 1
+title: one place
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  p: {shapes: [{type: point, at: [0, 0, 0], mass: 1}], points: {a: [0, 0, 0], b: [0, 0, 0]}}
+  q: {shapes: [{type: point, at: [0, 0, 0], mass: 1}], points: {a: [0, 0, 0]}}
+joints: {j: {type: ball, from: ground.O, to: p.a}, k: {type: ball, from: p.b, to: q.a}}
+"""
+PLATE = """\
+heun: 1
+title: a machine on a plate
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  plate: {shapes: [{type: box, center: [0, 0, -1], size: [1000, 1000, 2], density: 1000}], points: {o: [0, 0, 0]}}
+  arm: {shapes: [{type: rod, from: [0, 0, 0], to: [0.1, 0, 0.2], mass: 1}], points: {a: [0, 0, 0]}}
+joints:
+  floor: {type: weld, from: ground.O, to: plate.o}
+  pin: {type: pin, from: plate.o, to: arm.a, axis: [0, 1, 0]}
+"""
+WHEEL = """\
+heun: 1
+title: A wheel and a slide
+ground: {points: {O: [0, 0, 0], P: [1, 0, 0]}}
+bodies:
+  wheel: {mass: 2, center: [0, 0, 0], inertia: [0.25, 0.25, 0.5], points: {o: [0, 0, 0]}}
+  block: {mass: 2, center: [1, 0, 0], inertia: [9, 9, 9], points: {p: [1, 0, 0]}}
+joints:
+  axle: {type: pin, from: ground.O, to: wheel.o, axis: [0, 0, 1]}
+  rail: {type: slide, from: ground.P, to: block.p, axis: [1, 0, 0]}
+"""
+
+
+def texts(figure: Figure) -> list[str]:
+    """What is written in the drawing of a figure, which is well-formed and has no number that is none."""
+    text = svg(laid_out(figure))
+    assert not re.search(r"\b(nan|inf)\b", text)
+    return [e.text or "" for e in tree.fromstring(text.encode()).iter("{http://www.w3.org/2000/svg}text")]
+
+
+def numbers_in(figure: Figure) -> Iterator[np.ndarray]:
+    """The corners of outlines and the ends of strokes."""
+    for panel in figure.panels:
+        for item in panel.items:
+            if isinstance(item, Polygon | Strokes):
+                yield item.corners if isinstance(item, Polygon) else item.ends
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", SPECS, ids=lambda path: path.stem)
+def test_every_spec_is_drawn(path: Path) -> None:
+    solved = solve(load(str(path)), Options(wanted=REPORTS))
+    source = Pictured("", solved)
+    figure = scene(source, Units())
+    written = texts(figure)
+    names = [*solved.spec.bodies, *solved.spec.joints]
+    told = " ".join(written)
+    assert all(name in told for name in names)
+    if not solved.of_one_instant:  # from aside, later, and in letters
+        later = solved.results.time[[0, len(solved.results.time) // 2]]
+        assert texts(scene(source, Units(), later, "40,25"))
+    for encoding in ("utf-8", "ascii"):
+        letters = drawn(figure, look_of(80, encoding, colours=False))
+        assert letters.replace("·", "").isascii() or encoding == "utf-8"  # that of N·m
+        assert max(map(len, letters.splitlines())) <= 80 or "µ" in letters
+    for points in numbers_in(figure):
+        assert np.isfinite(points).all()
+    assert svg(laid_out(scene(source, Units()))) == svg(laid_out(figure))
+
+
+@pytest.mark.parametrize("path", SPECS[::4], ids=lambda path: path.stem)
+def test_no_words_of_labels_lie_on_each_other(path: Path) -> None:
+    figure = as_assembled(load(str(path)))
+    names = {item.text for panel in figure.panels for item in panel.items if isinstance(item, Label)}
+    shapes = [s for s in laid_out(figure).shapes if isinstance(s, Text) and s.halo and s.text in names]
+    boxes = [(t.x, t.y, t.x + wide(t.text, t.size), t.y + HIGH * t.size) for t in shapes]
+    for k, (a, b, c, d) in enumerate(boxes):
+        for e, f, g, h in boxes[:k]:
+            assert min(c, g) - max(a, e) < 1e-6 or min(d, h) - max(b, f) < 1e-6
+
+
+def test_a_scene_of_one_place_is_drawn() -> None:
+    written = texts(scene(Pictured("", study(POINT)), Units()))
+    assert {"p", "q", "j", "k"} <= set(written)
+
+
+def test_what_reaches_far_beyond_the_joints_is_drawn_in_part() -> None:
+    figure = scene(Pictured("", study(PLATE)), Units())
+    assert any("drawn in part, reaching farther: plate" in note for note in figure.notes)
+    (panel,) = figure.panels
+    assert panel.x.high - panel.x.low < 10.0
+    for points in numbers_in(figure):
+        assert (points[..., 0] >= panel.x.low - 1e-9).all() and (points[..., 0] <= panel.x.high + 1e-9).all()
+        assert (points[..., 1] >= panel.y.low - 1e-9).all() and (points[..., 1] <= panel.y.high + 1e-9).all()
+
+
+def test_a_body_without_shapes_at_one_place_is_drawn_as_its_inertia_unless_it_cannot_turn() -> None:
+    figure = scene(Pictured("", study(WHEEL)), Units())
+    outlines = {item.name: item.corners for item in figure.panels[0].items if isinstance(item, Polygon)}
+    assert set(outlines) == {"wheel"}
+    # a disc has m r^2/2 about its axis, an even ellipsoid m (a^2 + b^2)/5
+    radius = np.sqrt(5.0 / 2.0 * 0.5 / 2.0)
+    assert np.hypot(*outlines["wheel"].T).max() == pytest.approx(radius, rel=1e-2)
+    assert any("ellipsoid that has its inertia: wheel" in note for note in figure.notes)
+
+
+def test_of_hundreds_of_bodies_names_are_left_out_and_it_is_said() -> None:
+    text = ["heun: 1", "title: a chain", "ground: {points: {O: [0, 0, 0]}}", "bodies:"]
+    count = 200
+    for k in range(count):
+        shape = f"{{type: rod, from: [{k}, 0, 0], to: [{k + 1}, 0, 0], mass: 1}}"
+        text.append(f"  b{k}: {{shapes: [{shape}], points: {{a: [{k}, 0, 0], z: [{k + 1}, 0, 0]}}}}")
+    text.append("joints:")
+    ends = ["ground.O", *(f"b{k}.z" for k in range(count))]
+    text += [f"  j{k}: {{type: ball, from: {ends[k]}, to: b{k}.a}}" for k in range(count)]
+    path = "\n".join(text) + "\n"
+    figure = as_assembled(load("chain.yaml", path))
+    assert any("200 bodies and 200 joints are too many" in note for note in figure.notes)
+    assert not any(re.fullmatch(r"[bj]\d+", word) for word in texts(figure))
+    assert len(svg(laid_out(figure))) < 2_000 * count
+
+
+def test_what_others_wrote_is_shown_and_never_markup() -> None:
+    text = POINT.replace("one place", f"'{HOSTILE}'")
+    figure = scene(Pictured(HOSTILE, study(text)), Units())
+    source = svg(laid_out(figure))
+    assert "<script" not in source and "\u202e" not in source
+    assert any('<script>alert(1)</script> & "x"' in word for word in texts(figure))
