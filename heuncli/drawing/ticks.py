@@ -8,8 +8,9 @@ from heuncli.drawing.figure import Scaling
 
 ROUND = (1.0, 2.0, 5.0, 10.0)
 TURNS = (15.0, 30.0, 45.0, 90.0, 180.0, 360.0)  # degrees
+FINEST = 4  # places behind the point, with more numbers have exponents
 SPARE = 0.06  # of the span of what is drawn, beyond it at both ends
-MANY = 1e6  # steps from zero: farther off, doubles tell them apart no more
+MANY = 1e8  # steps from zero: farther off, numbers are too long to stand beside an axis
 
 
 def ticks(scaling: Scaling, most: int) -> list[tuple[float, str]]:
@@ -17,7 +18,9 @@ def ticks(scaling: Scaling, most: int) -> list[tuple[float, str]]:
     if scaling.named:
         return list(scaling.named)
     if scaling.logarithmic:
-        return _decades(scaling.low, scaling.high, most)
+        found = _decades(scaling.low, scaling.high, most)
+        if len(found) > 1:
+            return found  # else the axis is so short that even numbers tell it
     span = scaling.high - scaling.low
     turning = "[deg]" in scaling.label
     step = _step(span / max(most, 1), turning=turning)
@@ -28,8 +31,8 @@ def ticks(scaling: Scaling, most: int) -> list[tuple[float, str]]:
     if max(abs(first), abs(last)) > MANY:
         return []
     values = [k * step for k in range(first, last + 1)]
-    decimals = max(0, -math.floor(math.log10(step) + 1e-9))
-    return [(value, written(value, decimals)) for value in values]
+    places = 0 if turning and step in TURNS else -math.floor(math.log10(step) + 1e-9)
+    return [(value, written(value, places)) for value in values]
 
 
 def _step(least: float, *, turning: bool) -> float:
@@ -52,11 +55,15 @@ def _decades(low: float, high: float, most: int) -> list[tuple[float, str]]:
     return []
 
 
-def written(value: float, decimals: int) -> str:
-    """A round number: plain where it is of a common size, else with an exponent."""
-    if value == 0.0 or 1e-4 <= abs(value) < 1e6:
-        return f"{value + 0.0:.{decimals}f}"
-    return short(value)
+def written(value: float, places: int) -> str:
+    """A round number to so many places behind the point: plain where it is of a common size, else with an exponent."""
+    if value == 0.0:
+        return "0" if places > FINEST else f"{0.0:.{max(places, 0)}f}"
+    if 10.0**-FINEST <= abs(value) < 1e6:
+        return f"{value:.{max(places, 0)}f}"
+    digits = max(0, places + math.floor(math.log10(abs(value)) + 1e-9))
+    mantissa, _, exponent = f"{value:.{digits}e}".partition("e")
+    return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
 def short(value: float) -> str:

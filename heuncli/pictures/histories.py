@@ -22,6 +22,7 @@ from heuncli.pictures.courses import (
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measured_points import MeasuredPoints, seen
 from heuncli.pictures.thinning import seen_places
+from heuncli.pictures.refusals import NotDrawable
 from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array
@@ -71,7 +72,11 @@ def history(
     over: str | None = None,
     measured: Sequence[MeasuredPoints] = (),
 ) -> Figure:
-    """The figure of some paths, of one run or of several over each other; over: the path along the axis across."""
+    """The figure of some paths, of one run or of several over each other; over: the path along the axis across.
+
+    Raises NotDrawable.
+    """
+    _require_one_axis(sources, over)
     drawn = list(_drawn(sources, paths, over))
     across = Across(over, *(("s", 1.0) if over is None else units.of(unit_of(over, sources[0].study.spec))))
     groups: dict[str, list[PanelCourse]] = {}
@@ -133,6 +138,18 @@ def _thinned(course: NumberCourse) -> NumberCourse:
     return course._replace(times=course.times[kept], values=course.values[kept])
 
 
+def _require_one_axis(sources: Sequence[Pictured], over: str | None) -> None:
+    """Raise NotDrawable where the path along the axis across is of one unit in one run, of another in the next."""
+    if over is None:
+        return
+    first, *others = [(source.name, unit_of(over, source.study.spec)) for source in sources]
+    for name, unit in others:
+        if unit != first[1]:
+            of, other = (QUANTITIES.get(own, own or "a number") for own in (first[1], unit))
+            message = f"--x {over}: of kind '{of}' in {first[0]}, '{other}' in {name}: no axis is of both"
+            raise NotDrawable(message, "draw them one after the other")
+
+
 def _axis_across(
     sources: Sequence[Pictured], drawn: Sequence[PanelCourse], measured: Sequence[MeasuredPoints], across: Across
 ) -> Scaling:
@@ -156,10 +173,12 @@ def _axis_up(unit: str, drawn: Sequence[PanelCourse], measured: Sequence[Measure
     peaks = [peak.value for each in drawn for peak in (each.course.low, each.course.high)]
     low, high = _range(np.concatenate([*(each.course.values for each in drawn), *(each.y for each in measured), peaks]))
     error = max(each.course.error or 0.0 for each in drawn)
+    reach = error if math.isfinite(error) else 0.0
+    band = size * (low - reach), size * (high + reach)  # of errors, which may reach farther than what is drawn
     if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
     low, high = ends(size * low, size * high, zero=_near_zero(low, high), spare=SPARE)
-    return Scaling(label, low, high)
+    return Scaling(label, min(low, band[0]), max(high, band[1]))
 
 
 def _all_open(drawn: Sequence[PanelCourse]) -> bool:
@@ -227,7 +246,7 @@ def _place(drawn: PanelCourse, peak: Peak, across: Across) -> tuple[float, str]:
     if across.over is None:
         return peak.at, instant(peak.at)
     x = across.size * float(values_at(drawn.source.study, across.over, np.array([peak.at]))[0])
-    return x, f"{short(float(f'{x:.4g}'))} {across.unit}".rstrip(" 1")
+    return x, f"{short(float(f'{x:.4g}'))} {'' if across.unit == '1' else across.unit}".rstrip()
 
 
 def figures(value: float, error: float, size: float) -> str:

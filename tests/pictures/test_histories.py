@@ -9,8 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.pictures.courses import NumberCourse
+from heuncli.pictures.histories import PanelCourse, _axis_up
 from heuncli.pictures.thinning import STRETCHES, seen_places
+from heuncli.report.table_units import Units
 from heuncli.results import Array
+from heuncli.study.ask.measure import Peak
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, heights, read
 from tests.shared.folders import ROOT
@@ -209,3 +213,21 @@ def test_the_same_bytes_every_time(heun: Heun, folder: Path) -> None:
         heun("plot", spec("engine"), "joints.main.force", "--x", "coordinates.main.angle", "-o", name)
         found.append((folder / name).read_bytes())
     assert found[0] == found[1]
+
+
+def test_the_whole_of_a_number_without_unit_is_told(heun: Heun, folder: Path) -> None:
+    """The place of an extreme over such a number keeps all its digits: 0.501 is not 0.50."""
+    (folder / "wheel.yaml").write_text(TURNING)
+    (panel,) = drawn(heun, folder, "wheel.yaml", "joints.shaft.force", "--x", "bodies.wheel.rotation.0.0")
+    for _, _, text in panel.words:
+        place = float(text.partition(" at ")[2])
+        assert min(abs(place - x) for x, _ in panel.marks) <= 2.0 * panel.across
+
+
+def test_what_is_less_than_its_error_stays_in_its_panel() -> None:
+    """A number of 3 known to 5, or a band wider than what it is of, is not drawn over the panels beside it."""
+    for value, error in ((3.0, 5.0), (30.0, 29.0)):
+        course = NumberCourse("p", "N", np.array([0.0, 1.0]), np.full(2, value), error, *2 * (Peak(value, 0.0),))
+        of = PanelCourse("p", 0, None, course.times, course)  # type: ignore[arg-type]
+        scaling = _axis_up("N", [of], [], Units({}))
+        assert scaling.low <= value - error and value + error <= scaling.high

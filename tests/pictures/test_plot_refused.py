@@ -21,6 +21,9 @@ sections: {along: {body: bar, from: top, to: end, count: 5}}
 """
 )
 PATH = "joints.pivot.force"
+TWO = HANGING.replace("{type: ball,", "{type: pin, axis: [0, 1, 0],") + "analysis: {duration: 0.1, samples: 3}\n"
+TURNED = TWO + "forces: {f: {type: torque, joint: pivot, value: t}}\n"
+PUSHED = TWO + "forces: {f: {type: actuator, from: {body: ground, at: [1, 0, 0]}, to: bar.top, value: t}}\n"
 REFUSED = [
     ((PATH,), "no spec is named"),
     (("hanging.yaml",), "what is to be drawn is not said"),
@@ -37,6 +40,10 @@ REFUSED = [
     (("hanging.yaml", "sweep.csv", PATH), "specs and sweeps in one picture"),
     (("sectioned.yaml", "sections.along", PATH), "one kind of picture at a time"),
     (("sectioned.yaml", "sections.along.M1"), "5 numbers"),
+    (("hanging.yaml", "energy.kinetic", "--axes", "to"), "--axes to does nothing to energy.kinetic"),
+    (("swinging.yaml", "polar", "foundation", "--axes", "to"), "--axes to does nothing to foundation.force"),
+    (("hanging.yaml", "modes", "--units", "mm"), "--units does nothing to mode shapes"),
+    (("turned.yaml", "pushed.yaml", PATH, "--x", "forces.f.value"), "'moment' in turned, 'force' in pushed"),
     (("hanging.yaml", PATH, "--at", "0"), "--at does nothing to numbers over time"),
     (("sectioned.yaml", "sections.along", "--x", "time"), "--x does nothing to section diagrams"),
     (("hanging.yaml", PATH, "--tension-side"), "--tension-side does nothing"),
@@ -57,6 +64,8 @@ REFUSED = [
 @pytest.fixture
 def files(folder: Path) -> Path:
     (folder / "sectioned.yaml").write_text(SECTIONED)
+    (folder / "turned.yaml").write_text(TURNED)
+    (folder / "pushed.yaml").write_text(PUSHED)
     (folder / "bench.csv").write_text("t [ms],F [kN],w\n0,1,2\n1,2,late\n")
     return folder
 

@@ -10,7 +10,7 @@ from heuncli.cli.solving import all_or_errors
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solution, specs_of
+from heuncli.commands.plot.sources import require_joints, solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.histories import history
 from heuncli.pictures.measured_points import MeasuredPoints
@@ -21,8 +21,9 @@ from heuncli.variants.stated import unit_of
 
 
 def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
-    """The figure. Raises UsageError, SpecError and what solving raises."""
+    """The figure. Raises UsageError, NotDrawable, SpecError and what solving raises."""
     paths = [*asked.paths, *([] if request.x is None else [request.x])]
+    require_joints(paths, request)
     specs = specs_of(asked.files, request)
     for name, spec in specs:
         measure.check([MeasureRequest("", path) for path in paths], spec, f"heun plot {name}".rstrip())

@@ -19,17 +19,17 @@ class PictureKind(NamedTuple):
     heeds: tuple[str, ...]
 
 
-EVERY = ("words", "output", "width", "units", "time_limit", "quiet")
+EVERY = ("words", "output", "width", "time_limit", "quiet")
 SCENE = ("set", "case")
 SOLVING = (*SCENE, "method", "step", "tolerance", "no_reduce", "least_norm")
 KINDS = {
-    "history": PictureKind("numbers over time", ("x", "measured", "axes", *SOLVING)),
-    "sections": PictureKind("section diagrams", ("at", "tension_side", *SOLVING)),
-    "polar": PictureKind("polar diagrams", ("axes", "view", *SOLVING)),
-    "scene": PictureKind("scenes", ("at", "view", *SOLVING)),
+    "history": PictureKind("numbers over time", ("x", "measured", "axes", "units", *SOLVING)),
+    "sections": PictureKind("section diagrams", ("at", "tension_side", "units", *SOLVING)),
+    "polar": PictureKind("polar diagrams", ("axes", "view", "units", *SOLVING)),
+    "scene": PictureKind("scenes", ("at", "view", "units", *SOLVING)),
     "modes": PictureKind("mode shapes", ("view", "without", *SCENE)),
-    "balance": PictureKind("harmonics by orders", SCENE),
-    "sweep": PictureKind("sweeps", ()),
+    "balance": PictureKind("harmonics by orders", ("units", *SCENE)),
+    "sweep": PictureKind("sweeps", ("units",)),
 }
 
 

@@ -8,7 +8,7 @@ from heuncli.cli.solving import choice
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solution, specs_of
+from heuncli.commands.plot.sources import require_joints, solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
@@ -34,6 +34,7 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
     view = None if request.view is None else choice("--view", request.view, LETTERS)
     paths = [_with_force(path) for path in asked.paths]
+    require_joints(paths, request)
     specs = specs_of(asked.files, request)
     for _, spec in specs:
         measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")

@@ -15,6 +15,7 @@ from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.pictures.courses import Pictured
 from heuncli.records import replace
+from heuncli.run_places import words_of
 from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
@@ -62,6 +63,13 @@ def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Sp
         for case in request.case.split(","):
             yield f"{name} {case}".lstrip(), load(file, overrides=given, checking=False, case=case)
     require_other_file(request.output, [file])
+
+
+def require_joints(paths: Sequence[str], request: PlotRequest) -> None:
+    """Raise UsageError for axes of joints where nothing that is drawn is a load of one."""
+    if request.axes is not None and not any("joints" in words_of(path) for path in paths):
+        message = f"--axes {request.axes} does nothing to {', '.join(paths)}: it is of the loads of joints"
+        raise UsageError(Problem("bad-option", message, hint="leave it out, or draw a joint: joints.NAME.force"))
 
 
 def require_no_paths(asked: PlotAsked) -> None:
