@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.drawing.canvas import Look
 from heuncli.drawing.figure import Blank, Trace
-from heuncli.drawing.letters import Look
 from heuncli.drawing.letters import drawn as in_letters
 from heuncli.kinetostatics.section_axes import first_axis
 from heuncli.pictures.bars import WholeBar

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.drawing.canvas import look_of
 from heuncli.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
 from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import drawn, look_of
+from heuncli.drawing.letters import drawn
 from heuncli.drawing.picture import Text, svg
 from heuncli.drawing.words import HIGH, wide
 from heuncli.pictures.courses import Pictured
