@@ -23,7 +23,8 @@ def require_width(width: int | None) -> None:
 
 def in_letters(figure: Figure, width: int | None, output: str | None = None) -> str:
     """The figure as text, for the terminal or for a file."""
-    from heuncli.drawing.letters import drawn, look_of
+    from heuncli.drawing.canvas import look_of
+    from heuncli.drawing.letters import drawn
 
     present = output is None and terminal.present()
     columns = width or (terminal.width() - 1 if present else WIDTH)

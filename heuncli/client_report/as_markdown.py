@@ -17,7 +17,8 @@ from heuncli.client_report.parts import (
     Sentence,
     Verbatim,
 )
-from heuncli.drawing.letters import Look, drawn
+from heuncli.drawing.canvas import Look
+from heuncli.drawing.letters import drawn
 from heuncli.foreign_text import shown
 
 MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~&!$])")  # what means something anywhere in a line

@@ -113,7 +113,7 @@ class Link(NamedTuple):
     name: str = ""
 
 
-class Label(NamedTuple):
+class PlaceLabel(NamedTuple):
     """Words that are to stand beside a place where there is room; letter: what stands there in letters, and is told.
 
     spare: nobody misses it where there is none.
@@ -168,7 +168,22 @@ class Cells(NamedTuple):
     values: Array
 
 
-Item = Trace | Band | Strokes | Polygon | Arrow | Spot | Words | Symbol | Link | Label | Upright | Blank | Bars | Cells
+Item = (
+    Trace
+    | Band
+    | Strokes
+    | Polygon
+    | Arrow
+    | Spot
+    | Words
+    | Symbol
+    | Link
+    | PlaceLabel
+    | Upright
+    | Blank
+    | Bars
+    | Cells
+)
 
 
 class Scaling(NamedTuple):

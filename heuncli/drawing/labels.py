@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 
-from heuncli.drawing.figure import Label
+from heuncli.drawing.figure import PlaceLabel
 from heuncli.drawing.pens import GREY, ink
 from heuncli.drawing.picture import Line, Shape, Text
 from heuncli.drawing.room import WordBox, WordField
@@ -19,7 +19,7 @@ NEAR = 18.0  # up to which they need no line
 FAR = 0.12  # what a pixel of distance costs, in cells of a curve
 
 
-def labelled(labels: Sequence[Label], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
+def labelled(labels: Sequence[PlaceLabel], box: PanelBox, field: WordField) -> tuple[list[Shape], list[str]]:
     """The words of labels with their lines, and those for which there is no room in the field."""
     lines: list[Shape] = []
     texts: list[Shape] = []

@@ -16,9 +16,9 @@ from heuncli.drawing.figure import (
     Cells,
     Figure,
     Item,
-    Label,
     Link,
     Panel,
+    PlaceLabel,
     Polygon,
     Scaling,
     Spot,
@@ -34,7 +34,7 @@ from heuncli.drawing.picture import Area, Line, Mark, Picture, Shape, Text
 from heuncli.drawing.room import WordBox, left_out
 from heuncli.drawing.scales import PanelBox
 from heuncli.drawing.shades import shade
-from heuncli.drawing.symbols import SYMBOLS, Part, link
+from heuncli.drawing.symbols import SYMBOLS, SymbolPart, link
 from heuncli.drawing.ticks import ticks
 from heuncli.drawing.words import SMALL, SPOT, apart, field_of, wide, words
 from heuncli.foreign_text import shown
@@ -151,7 +151,7 @@ def _panel(panel: Panel, box: PanelBox, width: float) -> tuple[list[Shape], list
         room = WordBox(MARGIN, box.top, width - MARGIN, box.bottom)
     field = field_of(drawn, room)
     texts, told = words(items, box, field)
-    named, without_names = labelled([item for item in items if isinstance(item, Label)], box, field)
+    named, without_names = labelled([item for item in items if isinstance(item, PlaceLabel)], box, field)
     grid, axes = ([], []) if panel.bare else _axes(box)
     return [*grid, *drawn[:filled], *axes, *drawn[filled:], *texts, *named], told + without_names
 
@@ -247,7 +247,7 @@ def _link(item: Link, box: PanelBox) -> Iterator[Shape]:
 
 
 def _parts(
-    parts: Sequence[Part], x: float, y: float, a: float, b: float, colour: str, name: str = ""
+    parts: Sequence[SymbolPart], x: float, y: float, a: float, b: float, colour: str, name: str = ""
 ) -> Iterator[Shape]:
     """The parts of a symbol about a place, its x along (a, b)."""
     length, name = math.hypot(a, b), shown(name)
@@ -264,7 +264,7 @@ def _parts(
         name = ""  # told once
 
 
-def _label(item: Label, box: PanelBox) -> Iterator[Shape]:
+def _label(item: PlaceLabel, box: PanelBox) -> Iterator[Shape]:
     """Placed when all else is (`_panel`)."""
     yield from ()
 
@@ -352,7 +352,7 @@ def _cells(item: Cells, box: PanelBox) -> Iterator[Shape]:
 
 DRAWN: dict[type, Callable[[Any, PanelBox], Iterator[Shape]]] = {
     Trace: _trace, Band: _band, Strokes: _strokes, Polygon: _polygon, Arrow: _arrow, Spot: _spot, Words: _words,
-    Symbol: _symbol, Link: _link, Label: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
+    Symbol: _symbol, Link: _link, PlaceLabel: _label, Upright: _upright, Blank: _blank, Bars: _bars, Cells: _cells,
 }  # fmt: skip
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import importlib.util
 import io
+from typing import Any
 
 from heuncli.drawing.picture import SHAPES, Area, Line, Mark, Picture, Text, corners
 from heuncli.errors import Problem, SpecError
 
 PER_INCH = 96.0  # pixels
-AS_IT_IS = {"scalex": False, "scaley": False}  # the axes are those of the drawing
+AS_IT_IS: dict[str, Any] = {"scalex": False, "scaley": False}  # the axes are those of the drawing
 POINTS = 72.0 / PER_INCH  # in a pixel
 FINE = 2.0  # pixels of a PNG in one of the drawing
 INSTALL = 'pip install "heuncli[plot]"; or a name that ends in .svg, which needs nothing'
@@ -40,11 +41,21 @@ def rendered(picture: Picture, form: str) -> bytes:
             style = (0.0, tuple(x * POINTS / width for x in shape.dash)) if shape.dash else "solid"
             axes.plot(xs, ys, color=shape.colour, linewidth=width, linestyle=style, zorder=place, **AS_IT_IS)
         elif isinstance(shape, Area):
-            filled = {"facecolor": shape.colour, "alpha": shape.opacity, "linewidth": 0.0, "zorder": place}
+            filled: dict[str, Any] = {
+                "facecolor": shape.colour,
+                "alpha": shape.opacity,
+                "linewidth": 0.0,
+                "zorder": place,
+            }
             axes.add_patch(Polygon(shape.points, **filled))
         elif isinstance(shape, Mark):
             face = shape.colour if shape.filled else "#ffffff"
-            own = {"facecolor": face, "edgecolor": shape.colour, "linewidth": 1.2 * POINTS, "zorder": place}
+            own: dict[str, Any] = {
+                "facecolor": face,
+                "edgecolor": shape.colour,
+                "linewidth": 1.2 * POINTS,
+                "zorder": place,
+            }
             round_ = not SHAPES[shape.shape]
             axes.add_patch(Circle((shape.x, shape.y), shape.size, **own) if round_ else Polygon(corners(shape), **own))
         else:

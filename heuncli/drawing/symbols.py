@@ -14,7 +14,7 @@ from heuncli.named_tuples import NamedTuple
 Points = tuple[tuple[float, float], ...]
 
 
-class Part(NamedTuple):
+class SymbolPart(NamedTuple):
     """A line through points; closed: back to its first; fill: with nothing, with paper, or with ink."""
 
     points: Points
@@ -22,10 +22,10 @@ class Part(NamedTuple):
     fill: str = ""
 
 
-class Shown(NamedTuple):
+class SymbolRow(NamedTuple):
     """A symbol: its parts, the first beneath the others; and its letter, with and without braille."""
 
-    parts: tuple[Part, ...]
+    parts: tuple[SymbolPart, ...]
     letter: str = ""
     plain: str = ""
 
@@ -36,71 +36,73 @@ def arc(radius: float, first: float, last: float, count: int = 20) -> Points:
     return tuple((radius * math.cos(a), radius * math.sin(a)) for a in angles)
 
 
-def ring(radius: float, fill: str = "") -> Part:
+def ring(radius: float, fill: str = "") -> SymbolPart:
     """A circle."""
-    return Part(arc(radius, 0.0, 360.0)[:-1], True, fill)
+    return SymbolPart(arc(radius, 0.0, 360.0)[:-1], True, fill)
 
 
-def box(x: float, y: float, fill: str = "") -> Part:
+def box(x: float, y: float, fill: str = "") -> SymbolPart:
     """A rectangle of half these sides."""
-    return Part(((-x, -y), (x, -y), (x, y), (-x, y)), True, fill)
+    return SymbolPart(((-x, -y), (x, -y), (x, y), (-x, y)), True, fill)
 
 
-def line(*points: tuple[float, float]) -> Part:
+def line(*points: tuple[float, float]) -> SymbolPart:
     """A line."""
-    return Part(points)
+    return SymbolPart(points)
 
 
-def hatched(at: float, half: float, step: float = 5.0) -> tuple[Part, ...]:
+def hatched(at: float, half: float, step: float = 5.0) -> tuple[SymbolPart, ...]:
     """The ground beyond x: its edge across, and slanted lines behind it."""
     count = round(2.0 * half / step)
     slants = (line((at, -half + k * step), (at + step, -half + (k + 1) * step)) for k in range(count))
     return (line((at, -half), (at, half)), *slants)
 
 
-def head(x: float, y: float, angle: float, size: float = 6.0) -> Part:
+def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
     """The head of an arrow with its tip there; angle: where it points [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
     back, side = (x - size * a, y - size * b), 0.42 * size
-    return Part(
+    return SymbolPart(
         ((x, y), (back[0] - side * b, back[1] + side * a), (back[0] + side * b, back[1] - side * a)), True, "ink"
     )
 
 
-QUARTERS = tuple(Part(((0.0, 0.0), *arc(3.6, a, a + 90.0, 6)), True, "ink") for a in (0.0, 180.0))
+QUARTERS = tuple(SymbolPart(((0.0, 0.0), *arc(3.6, a, a + 90.0, 6)), True, "ink") for a in (0.0, 180.0))
 SPIRAL = tuple((r * math.cos(0.9 * r), r * math.sin(0.9 * r)) for r in (0.4 * k for k in range(5, 31)))
-SYMBOLS: Mapping[str, Shown] = {
+SYMBOLS: Mapping[str, SymbolRow] = {
     # how a joint lets turn: about what is seen along, about what is seen across, all ways, about two axes, not at all
-    "circle": Shown((ring(4.2, "paper"),), "○", "o"),
-    "barrel": Shown((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
-    "ball": Shown((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
-    "cross": Shown((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
-    "square": Shown((box(4.0, 4.0, "ink"),), "■", "#"),
-    "dot": Shown((ring(1.6, "paper"),), "•", "o"),
-    "slider": Shown((box(9.0, 4.5, "paper"),), "□", "="),
+    "circle": SymbolRow((ring(4.2, "paper"),), "○", "o"),
+    "barrel": SymbolRow((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
+    "ball": SymbolRow((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
+    "cross": SymbolRow((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
+    "square": SymbolRow((box(4.0, 4.0, "ink"),), "■", "#"),
+    "dot": SymbolRow((ring(1.6, "paper"),), "•", "o"),
+    "slider": SymbolRow((box(9.0, 4.5, "paper"),), "□", "="),
     # along what it lets slide: a guide from its side and from its end, a plane from its side and from above
-    "guide": Shown((line((-16.0, 7.0), (16.0, 7.0)), line((-16.0, -7.0), (16.0, -7.0)))),
-    "bore": Shown((ring(7.2),)),
-    "table": Shown((line((-7.0, -14.0), (-7.0, 14.0)),)),
-    "field": Shown((box(12.0, 9.0),)),
+    "guide": SymbolRow((line((-16.0, 7.0), (16.0, 7.0)), line((-16.0, -7.0), (16.0, -7.0)))),
+    "bore": SymbolRow((ring(7.2),)),
+    "table": SymbolRow((line((-7.0, -14.0), (-7.0, 14.0)),)),
+    "field": SymbolRow((box(12.0, 9.0),)),
     # where it stands on the ground, x into it
-    "foot": Shown((Part(((0.0, 0.0), (13.0, 7.5), (13.0, -7.5)), True, "paper"), *hatched(13.0, 12.5)), "", "/"),
-    "bed": Shown(hatched(7.0, 15.0), "", "/"),
-    "clamp": Shown(hatched(4.0, 10.0), "", "/"),
+    "foot": SymbolRow(
+        (SymbolPart(((0.0, 0.0), (13.0, 7.5), (13.0, -7.5)), True, "paper"), *hatched(13.0, 12.5)), "", "/"
+    ),
+    "bed": SymbolRow(hatched(7.0, 15.0), "", "/"),
+    "clamp": SymbolRow(hatched(4.0, 10.0), "", "/"),
     # of bodies
-    "centre": Shown((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
-    "mass": Shown((ring(3.4, "ink"),), "●", "*"),
+    "centre": SymbolRow((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
+    "mass": SymbolRow((ring(3.4, "ink"),), "●", "*"),
     # what acts
-    "turning": Shown((line(*arc(12.0, -60.0, 205.0)), head(*arc(12.0, 0.0, 215.0)[-1], 305.0))),
-    "turning back": Shown((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
-    "sliding": Shown((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
-    "coil": Shown((line(*SPIRAL),)),
-    "toward": Shown((ring(4.4, "paper"), ring(1.4, "ink")), "⊙", "."),
-    "away": Shown((ring(4.4, "paper"), line((-3.1, -3.1), (3.1, 3.1)), line((-3.1, 3.1), (3.1, -3.1))), "⊗", "x"),
+    "turning": SymbolRow((line(*arc(12.0, -60.0, 205.0)), head(*arc(12.0, 0.0, 215.0)[-1], 305.0))),
+    "turning back": SymbolRow((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
+    "sliding": SymbolRow((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
+    "coil": SymbolRow((line(*SPIRAL),)),
+    "toward": SymbolRow((ring(4.4, "paper"), ring(1.4, "ink")), "⊙", "."),
+    "away": SymbolRow((ring(4.4, "paper"), line((-3.1, -3.1), (3.1, 3.1)), line((-3.1, 3.1), (3.1, -3.1))), "⊗", "x"),
 }
 
 
-def spring(length: float) -> tuple[Part, ...]:
+def spring(length: float) -> tuple[SymbolPart, ...]:
     """A zigzag between two ends that are straight."""
     end = min(8.0, 0.2 * length)
     turns, high = 7, min(5.5, 0.25 * length)
@@ -109,7 +111,7 @@ def spring(length: float) -> tuple[Part, ...]:
     return (line((0.0, 0.0), (end, 0.0), *zigzag, (length - end, 0.0), (length, 0.0)),)
 
 
-def dashpot(length: float) -> tuple[Part, ...]:
+def dashpot(length: float) -> tuple[SymbolPart, ...]:
     """A piston in a cup."""
     cup, high = min(9.0, 0.2 * length), min(5.0, 0.2 * length)
     m = 0.5 * length
@@ -121,11 +123,11 @@ def dashpot(length: float) -> tuple[Part, ...]:
     )
 
 
-def damped_spring(length: float) -> tuple[Part, ...]:
+def damped_spring(length: float) -> tuple[SymbolPart, ...]:
     """A zigzag beside a dashpot."""
     end, off = min(8.0, 0.15 * length), min(6.5, 0.25 * length)
 
-    def beside(parts: tuple[Part, ...], y: float) -> tuple[Part, ...]:
+    def beside(parts: tuple[SymbolPart, ...], y: float) -> tuple[SymbolPart, ...]:
         return tuple(part._replace(points=tuple((a + end, 0.8 * b + y) for a, b in part.points)) for part in parts)
 
     inner = length - 2.0 * end
@@ -134,31 +136,31 @@ def damped_spring(length: float) -> tuple[Part, ...]:
     return (*ends, *plates, *beside(spring(inner), off), *beside(dashpot(inner), -off))
 
 
-def cylinder(length: float) -> tuple[Part, ...]:
+def cylinder(length: float) -> tuple[SymbolPart, ...]:
     """A rod that goes into a cylinder, as those that push hydraulically."""
     high = min(5.0, 0.2 * length)
     x = 0.6 * length
-    barrel = Part(((0.0, -high), (x, -high), (x, high), (0.0, high)), True, "paper")
+    barrel = SymbolPart(((0.0, -high), (x, -high), (x, high), (0.0, high)), True, "paper")
     return barrel, line((0.45 * length, high), (0.45 * length, -high)), line((0.45 * length, 0.0), (length, 0.0))
 
 
-def straight(length: float) -> tuple[Part, ...]:
+def straight(length: float) -> tuple[SymbolPart, ...]:
     """A line."""
     return (line((0.0, 0.0), (length, 0.0)),)
 
 
-def rod(length: float) -> tuple[Part, ...]:
+def rod(length: float) -> tuple[SymbolPart, ...]:
     """A line between two eyes."""
     eye = tuple((a + length, b) for a, b in arc(2.6, 0.0, 360.0)[:-1])
-    return line((0.0, 0.0), (length, 0.0)), ring(2.6, "paper"), Part(eye, True, "paper")
+    return line((0.0, 0.0), (length, 0.0)), ring(2.6, "paper"), SymbolPart(eye, True, "paper")
 
 
-LINKS: Mapping[str, Callable[[float], tuple[Part, ...]]] = {
+LINKS: Mapping[str, Callable[[float], tuple[SymbolPart, ...]]] = {
     "spring": spring, "damped spring": damped_spring, "actuator": cylinder, "rope": straight, "rod": rod,
 }  # fmt: skip
 SHORT = 14.0  # pixels, below which a link is a line
 
 
-def link(kind: str, length: float) -> tuple[Part, ...]:
+def link(kind: str, length: float) -> tuple[SymbolPart, ...]:
     """The parts of what joins two places so far apart, x from the first to the second."""
     return LINKS[kind](length) if length >= SHORT else straight(length)

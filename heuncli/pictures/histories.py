@@ -21,8 +21,8 @@ from heuncli.pictures.courses import (
 )
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measured_points import MeasuredPoints, seen
-from heuncli.pictures.thinning import seen_places
 from heuncli.pictures.refusals import NotDrawable
+from heuncli.pictures.thinning import seen_places
 from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from heuncli.drawing.figure import Item, Label, Link, Polygon, Strokes, Symbol
+from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.joint_kinds import JOINTS, TYPES, Kind
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
@@ -18,8 +18,8 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machine
 from heuncli.scenery.poses import Poses
-from heuncli.scenery.silhouettes import Solid, edges_seen, outline, solid_of
-from heuncli.scenery.views import View
+from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, solid_of
+from heuncli.scenery.views import SceneView
 from heuncli.spec.models import Spec, Spring
 
 PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
@@ -48,7 +48,7 @@ class Stood:
     machine: Machine
     centers: Mapping[str, Array]
     poses: Poses
-    view: View
+    view: SceneView
     size: float
 
     def seen(self, body: str, points: Array, k: int) -> Array:
@@ -64,7 +64,7 @@ class Stood:
         return float(self.view.depth(axis if body == GROUND else self.poses.attitudes[body][k] @ axis))
 
     @cached_property
-    def solids(self) -> dict[str, tuple[Solid, ...]]:
+    def solids(self) -> dict[str, tuple[SeenSolid, ...]]:
         """The solids of each body."""
         shown = {body.name: body.surfaces for body in self.machine.bodies}
         for look in self.machine.joints:  # of what cannot turn nobody asks for the inertia
@@ -100,7 +100,7 @@ class Stood:
         return (0.0, 1.0) if centre[1] < place[1] - 0.2 * abs(centre[0] - place[0]) else DOWN
 
 
-class Piece(NamedTuple):
+class SeenPiece(NamedTuple):
     """A part of a body with what is drawn of it: how near it is, how large, to be drawn in this order."""
 
     depth: float
@@ -114,7 +114,7 @@ def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
     depths = [piece.depth for piece in pieces if piece.depth > -np.inf]
     step = LEVEL * (max(depths) - min(depths)) if depths else 0.0
 
-    def order(piece: Piece) -> tuple[float, float]:
+    def order(piece: SeenPiece) -> tuple[float, float]:
         level = piece.depth if step == 0.0 or piece.depth == -np.inf else round(piece.depth / step)
         return float(level), -piece.area
 
@@ -122,28 +122,28 @@ def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
     return [item for piece in pieces for item in piece.items]
 
 
-def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[Piece]:
+def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPiece]:
     """The solids of a body, or the lines between its points."""
     pen = stood.pens[body.name]
     for solid in stood.solids[body.name]:
         places = stood.poses.at(body.name, solid.surface.corners, k)
         around = outline(stood.size * stood.view.flat(places))
         if body.spread:
-            yield Piece(-np.inf, area(around), (Polygon(body.name, around, pen, filled=not thin, width=THIN),))
+            yield SeenPiece(-np.inf, area(around), (Polygon(body.name, around, pen, filled=not thin, width=THIN),))
             continue
         lines: tuple[Item, ...] = ()
         if not thin:
             edges = edges_seen(solid, stood.poses.attitudes[body.name][k], stood.view)
             lines = (Strokes(stood.seen(body.name, edges, k), pen, THIN),)
         shape = Polygon(body.name, around, pen, solid=not thin, width=THIN if thin else 1.3)
-        yield Piece(float(stood.view.depth(places).mean()), area(around), (shape, *lines))
+        yield SeenPiece(float(stood.view.depth(places).mean()), area(around), (shape, *lines))
     for line in body.lines:
         if len(line) > 1:
             places = stood.poses.at(body.name, line, k)
             ends = stood.seen(body.name, line, k)
             width = ARM if stood.solids[body.name] else BAR
             strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
-            yield Piece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
+            yield SeenPiece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
 
 
 def on_paper(place: Array) -> tuple[float, float]:
@@ -291,17 +291,17 @@ def marks(stood: Stood, k: int) -> Iterator[Symbol]:
             )
 
 
-def names(stood: Stood, k: int) -> Iterator[Label]:
+def names(stood: Stood, k: int) -> Iterator[PlaceLabel]:
     """The names of bodies, joints, springs and actuators; in letters capitals, numbers and small letters."""
     if not stood.are_named:
         return
     for letter, body in zip(letters("A"), stood.machine.bodies, strict=False):
         x, y = stood.seen(body.name, stood.centers[body.name], k).tolist()
-        yield Label(x, y, body.name, letter, stood.pens[body.name])
+        yield PlaceLabel(x, y, body.name, letter, stood.pens[body.name])
     for number, look in enumerate(stood.machine.joints, 1):
         ends = stood.seen(look.b, look.q, k), stood.seen(look.a, look.p, k)
         x, y = (0.5 * (ends[0] + ends[1]) if TYPES[look.kind].keeps_distance else ends[0]).tolist()
-        yield Label(x, y, look.name, str(number))
+        yield PlaceLabel(x, y, look.name, str(number))
     for letter, own in zip(letters("a"), stood.machine.lines, strict=False):
         x, y = (0.5 * (stood.seen(own.a, own.p, k) + stood.seen(own.b, own.q, k))).tolist()
-        yield Label(x, y, own.name, letter, APPLIED)
+        yield PlaceLabel(x, y, own.name, letter, APPLIED)

@@ -21,7 +21,7 @@ from heuncli.pictures.refusals import NotDrawable
 from heuncli.report.mode_words import about, figures_of, notes
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND, Machine
-from heuncli.scenery.views import View
+from heuncli.scenery.views import SceneView
 
 HEIGHT = 230.0  # pixels
 MOST = 12  # modes that are drawn
@@ -49,7 +49,7 @@ class MovingLine(NamedTuple):
     bodies: tuple[int, ...]
 
 
-def mode_shapes(found: MovedBodies, machine: Machine, view: View) -> Figure:
+def mode_shapes(found: MovedBodies, machine: Machine, view: SceneView) -> Figure:
     """The figure of a scene's modes, a panel each. Raises NotDrawable where nothing is free to oscillate."""
     modes = found.modes.modes
     if not modes:
@@ -151,7 +151,7 @@ def _title(k: int, mode: Mode, found: MovedBodies) -> str:
 
 
 def _panel(
-    mode: DrawnMode, lines: list[MovingLine], supports: list[Array], view: View, axes: tuple[Scaling, Scaling]
+    mode: DrawnMode, lines: list[MovingLine], supports: list[Array], view: SceneView, axes: tuple[Scaling, Scaling]
 ) -> Panel:
     """A mode: at rest, and displaced."""
     items: list[Item] = []

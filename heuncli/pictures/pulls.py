@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Arrow, Item, Label, Strokes, Symbol
+from heuncli.drawing.figure import Arrow, Item, PlaceLabel, Strokes, Symbol
 from heuncli.drawing.ticks import short
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
@@ -16,7 +16,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.machine_items import on_paper
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Block
-from heuncli.scenery.views import View
+from heuncli.scenery.views import SceneView
 from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
 from heuncli.tolerances import EPS
@@ -51,7 +51,7 @@ class Pull(NamedTuple):
         return float(np.linalg.norm(self.vector))
 
 
-class Spread(NamedTuple):
+class SpreadLoad(NamedTuple):
     """A distributed load: its ends (2, 3) and what it is at them (2, 3) [N/m], world axes."""
 
     name: str
@@ -63,7 +63,7 @@ class Pulls(NamedTuple):
     """What acts at an instant; the joints whose force or moment is open there; whether it is that of a blow."""
 
     all: Sequence[Pull]
-    spreads: Sequence[Spread]
+    spreads: Sequence[SpreadLoad]
     open: Sequence[str]
     struck: bool = False
 
@@ -104,7 +104,7 @@ def pulls_of(study: Study, t: float) -> Pulls:
     return _pulls(found, spreads, rounding)
 
 
-def _pulls(found: Sequence[Pull], spreads: Sequence[Spread], rounding: dict[bool, float]) -> Pulls:
+def _pulls(found: Sequence[Pull], spreads: Sequence[SpreadLoad], rounding: dict[bool, float]) -> Pulls:
     """Those that are known and more than rounding."""
     known = [pull for pull in found if math.isfinite(pull.size)]
     largest = {turns: max((p.size for p in known if p.turns == turns), default=0.0) for turns in (False, True)}
@@ -132,16 +132,16 @@ def _blows(study: Study) -> Iterator[Pull]:
             yield Pull(name, place, vector, APPLIED_PEN, blow.kind == "couple")
 
 
-def _spread(own: AppliedLoad, states: BodyStates) -> Spread:
+def _spread(own: AppliedLoad, states: BodyStates) -> SpreadLoad:
     """A distributed load at the first of some instants."""
     first, second = own.action.spread
     body = own.action.to.body
     ends = [states.x[0, body] + states.R[0, body] @ part.spread.start for part in (first, second)]
     densities = [part.force[0] / part.spread.half_length for part in (first, second)]
-    return Spread(own.load.name, np.array(ends), np.array(densities))
+    return SpreadLoad(own.load.name, np.array(ends), np.array(densities))
 
 
-class Drawn(NamedTuple):
+class DrawnPulls(NamedTuple):
     """Pulls as they are drawn: how long one N is, in the unit of the picture, the items, and what they do not tell."""
 
     scale: float
@@ -149,7 +149,7 @@ class Drawn(NamedTuple):
     notes: Sequence[str]
 
 
-def drawn(pulls: Pulls, view: View, size: float, side: float, units: Units) -> Drawn:
+def drawn(pulls: Pulls, view: SceneView, size: float, side: float, units: Units) -> DrawnPulls:
     """The arrows; size: of the picture's unit in a metre; side: the larger one of what is drawn, in that unit."""
     forces, moments = pulls.of(turning=False), pulls.of(turning=True)
     scale = LONGEST * side / max((pull.size for pull in forces), default=math.inf)
@@ -169,10 +169,10 @@ def drawn(pulls: Pulls, view: View, size: float, side: float, units: Units) -> D
             items.append(_value(pull, place, *pulls.unit(units, turning=True)))
     hidden = [pull.name for pull in moments if not any(pull is one for one in facing)]
     notes = [f"not drawn, as they do not turn in the picture: the moments of {', '.join(hidden)}"] if hidden else []
-    return Drawn(scale, items, notes)
+    return DrawnPulls(scale, items, notes)
 
 
-def _force(pull: Pull, view: View, size: float, scale: float, least: float) -> Iterator[Item]:
+def _force(pull: Pull, view: SceneView, size: float, scale: float, least: float) -> Iterator[Item]:
     """An arrow, or its head or tail where it points along the line of sight."""
     x, y = (size * view.flat(pull.place)).tolist()
     by_x, by_y = (scale * view.flat(pull.vector)).tolist()
@@ -183,14 +183,14 @@ def _force(pull: Pull, view: View, size: float, scale: float, least: float) -> I
         yield Symbol(x, y, symbol, (1.0, 0.0), pull.pen, pull.name)
 
 
-def _value(pull: Pull, place: Array, unit: str, of_it: float) -> Label:
+def _value(pull: Pull, place: Array, unit: str, of_it: float) -> PlaceLabel:
     """Its magnitude, and the name of what is applied."""
     applied = pull.pen == APPLIED_PEN
     text = f"{pull.name} " * applied + f"{_digits(of_it * pull.size)} {unit}"
-    return Label(*on_paper(place), text, pull.name if applied else "", pull.pen, spare=not applied)
+    return PlaceLabel(*on_paper(place), text, pull.name if applied else "", pull.pen, spare=not applied)
 
 
-def _comb(one: Spread, pulls: Pulls, view: View, size: float, side: float, units: Units) -> Iterator[Item]:
+def _comb(one: SpreadLoad, pulls: Pulls, view: SceneView, size: float, side: float, units: Units) -> Iterator[Item]:
     """A distributed load: arrows that end on the body, to a scale of their own, and the line of their tails."""
     densest = max(float(np.linalg.norm(density)) for each in pulls.spreads for density in each.densities)
     shares = np.linspace(0.0, 1.0, TEETH)[:, None]
@@ -203,7 +203,7 @@ def _comb(one: Spread, pulls: Pulls, view: View, size: float, side: float, units
     (force, of_force), (length, of_length) = units.of("N"), units.of("m")
     values = [_digits(of_force / of_length * float(np.linalg.norm(density))) for density in one.densities]
     text = f"{one.name} {' to '.join(dict.fromkeys(values))} {force}/{length}"
-    yield Label(*on_paper(tails[TEETH // 2]), text, one.name, APPLIED_PEN)
+    yield PlaceLabel(*on_paper(tails[TEETH // 2]), text, one.name, APPLIED_PEN)
 
 
 def key(pulls: Pulls, scale: float, x: float, y: float, step: float, units: Units) -> Iterator[Item]:

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Arrow, Figure, Item, Label, Panel, Scaling
+from heuncli.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scaling
 from heuncli.drawing.ticks import short
 from heuncli.mechanism.model import Mechanism
 from heuncli.pictures import machine_items, traces
@@ -134,7 +134,7 @@ def _later(stood: Stood, k: int) -> list[Item]:
     return items + machine_items.joints(stood, k, thin=True)
 
 
-def _instants(stood: Stood) -> Iterator[Label]:
+def _instants(stood: Stood) -> Iterator[PlaceLabel]:
     """The later instants, beside the body that has moved most since the first."""
     if len(stood.poses.times) < 2:
         return
@@ -145,7 +145,7 @@ def _instants(stood: Stood) -> Iterator[Label]:
     most = max(ways, key=lambda name: (float(np.abs(ways[name] - ways[name][0]).max()), name))
     for t, (x, y) in zip(stood.poses.times.tolist(), ways[most].tolist(), strict=True):
         text = f"{short(t)} s"
-        yield Label(x, y, text, text, LATER)
+        yield PlaceLabel(x, y, text, text, LATER)
 
 
 def _corner(stood: Stood, window: Window, strip: float) -> Iterator[Item]:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Label, Trace
+from heuncli.drawing.figure import PlaceLabel, Trace
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured, instants
 from heuncli.pictures.machine_items import Stood, on_paper
@@ -66,7 +66,7 @@ def curves(stood: Stood, ways: Sequence[Traced]) -> Iterator[Trace]:
         yield Trace(one.name, x, y, stood.pens[one.body], thin=True)
 
 
-def names(stood: Stood, ways: Sequence[Traced]) -> Iterator[Label]:
+def names(stood: Stood, ways: Sequence[Traced]) -> Iterator[PlaceLabel]:
     """The names of the points, where their ways begin."""
     for one in ways:
-        yield Label(*on_paper(seen(stood, one)[0]), one.name, one.name, stood.pens[one.body])
+        yield PlaceLabel(*on_paper(seen(stood, one)[0]), one.name, one.name, stood.pens[one.body])

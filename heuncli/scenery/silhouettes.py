@@ -9,14 +9,14 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.scenery.solids import Surface
-from heuncli.scenery.views import View
+from heuncli.scenery.views import SceneView
 
 Indices = np.ndarray[tuple[int, ...], np.dtype[np.intp]]
 KNOWN = 9  # decimals, of a surface's size, to which its edges are found among its corners
 NO_FACE = -1
 
 
-class Solid(NamedTuple):
+class SeenSolid(NamedTuple):
     """A surface, its faces' normals (f, 3), its edges in straight pieces (m, 2, 3), and of each the faces beside it.
 
     beside (m, 2): NO_FACE where there is none. All in body axes.
@@ -28,7 +28,7 @@ class Solid(NamedTuple):
     beside: Indices
 
 
-def solid_of(surface: Surface) -> Solid:
+def solid_of(surface: Surface) -> SeenSolid:
     """What of a surface is looked up for each view of it."""
     c = surface.corners
     p, q, r = c[np.array([face[:3] for face in surface.faces])].swapaxes(0, 1)
@@ -47,7 +47,9 @@ def solid_of(surface: Surface) -> Solid:
             faces = sides.get((min(a, b), max(a, b)), [])
             pieces.append(edge[k : k + 2])
             beside.append([*faces, NO_FACE, NO_FACE][:2])
-    return Solid(surface, normals, np.array(pieces).reshape(-1, 2, 3), np.array(beside, dtype=np.intp).reshape(-1, 2))
+    return SeenSolid(
+        surface, normals, np.array(pieces).reshape(-1, 2, 3), np.array(beside, dtype=np.intp).reshape(-1, 2)
+    )
 
 
 def outline(points: Array) -> Array:
@@ -69,7 +71,7 @@ def outline(points: Array) -> Array:
     return np.array(halves)
 
 
-def edges_seen(solid: Solid, rotation: Array, view: View) -> Array:
+def edges_seen(solid: SeenSolid, rotation: Array, view: SceneView) -> Array:
     """The pieces of edges (k, 2, 3) on the side towards the eye, body axes; rotation: the body's attitude (3, 3)."""
     d = rotation.T @ view.toward  # to the eye, in body axes
     faces = np.append(solid.normals @ d > 0.0, False)  # the last one stands for no face

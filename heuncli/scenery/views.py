@@ -29,7 +29,7 @@ KNOWN = "x, y, z, or azimuth and elevation in degrees"
 SUCH = "such as --view z or --view 30,20"
 
 
-class View(NamedTuple):
+class SceneView(NamedTuple):
     """Directions (3,) of unit length: to the right, up, and to the eye; words: from where that is."""
 
     right: Array
@@ -67,7 +67,7 @@ def named(direction: Array) -> str:
     return found
 
 
-def along(direction: Array, gravity: Array) -> View:
+def along(direction: Array, gravity: Array) -> SceneView:
     """Seen along a line; the other world axes go to the right and up rather than to the left and down."""
     d = _clean(direction)
     up = _across(-gravity, d)
@@ -78,10 +78,10 @@ def along(direction: Array, gravity: Array) -> View:
     if right[int(np.argmax(np.abs(right)))] < 0.0:
         d, right = -d, -right
     told = named(d)
-    return View(right, up, d, told if told.startswith("-") else f"+{told}")
+    return SceneView(right, up, d, told if told.startswith("-") else f"+{told}")
 
 
-def turned(azimuth: float, elevation: float, gravity: Array) -> View:
+def turned(azimuth: float, elevation: float, gravity: Array) -> SceneView:
     """Seen from an azimuth and an elevation [degrees]."""
     up = _clean(-gravity) if gravity.any() else np.array([0.0, 0.0, 1.0])
     right = np.eye(3)[1 if int(np.argmax(np.abs(up))) == 0 else 0]
@@ -91,10 +91,10 @@ def turned(azimuth: float, elevation: float, gravity: Array) -> View:
     level = math.sin(a) * right - math.cos(a) * ahead
     d = _clean(math.cos(e) * level + math.sin(e) * up)
     r = _clean(math.cos(a) * right + math.sin(a) * ahead)
-    return View(r, _clean(np.cross(d, r)), d, f"azimuth {azimuth:.6g}, elevation {elevation:.6g} degrees")
+    return SceneView(r, _clean(np.cross(d, r)), d, f"azimuth {azimuth:.6g}, elevation {elevation:.6g} degrees")
 
 
-def view_of(words: str, gravity: Array) -> View:
+def view_of(words: str, gravity: Array) -> SceneView:
     """The view that `--view` asks for. Raises Finding."""
     text = words.strip().lower()
     if text in ("x", "y", "z"):
@@ -108,7 +108,7 @@ def view_of(words: str, gravity: Array) -> View:
     return turned(azimuth, elevation, gravity)
 
 
-def usual(scene: PreparedScene, extent: Array) -> View:
+def usual(scene: PreparedScene, extent: Array) -> SceneView:
     """What stays in a plane along its normal, unless it is long across it; all else from aside.
 
     extent: points (n, 3) that the picture is of.

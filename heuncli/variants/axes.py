@@ -43,7 +43,7 @@ class AxisError(HeunError):
         super().__init__(Problem(code, f"{word}: {message}", hint=hint))
 
 
-class WrittenNumber(NamedTuple):
+class NumberWithUnit(NamedTuple):
     """A number as it is written, and its unit (empty: none)."""
 
     value: float
@@ -136,13 +136,13 @@ def at_top_level(text: str) -> list[str]:
     return [*parts, text[start:]]
 
 
-def figure_of(text: str) -> WrittenNumber | None:
+def figure_of(text: str) -> NumberWithUnit | None:
     """The number and the unit of a text such as `20 mm`; None where it is no such text."""
     found = QUANTITY.match(text)
     if found is None:
         return None
     value = float(found[1].replace(" ", ""))
-    return WrittenNumber(value, (found[2] or "").strip()) if math.isfinite(value) else None
+    return NumberWithUnit(value, (found[2] or "").strip()) if math.isfinite(value) else None
 
 
 def _listed(word: str, values: str) -> tuple[str, ...]:
@@ -203,7 +203,7 @@ def _two(word: str, texts: tuple[str, str], message: str, hint: str) -> tuple[fl
     return first.value * size / own, second.value, second.unit
 
 
-def _figure(word: str, text: str, hint: str) -> WrittenNumber:
+def _figure(word: str, text: str, hint: str) -> NumberWithUnit:
     found = figure_of(text)
     if found is None:
         raise AxisError(word, f"'{text.strip()}' is not a number with or without a unit", hint)

@@ -9,8 +9,9 @@ import pytest
 
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.commands.plot.sources import solution
+from heuncli.drawing.canvas import Look
 from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import Look, drawn
+from heuncli.drawing.letters import drawn
 from heuncli.drawing.picture import svg
 from heuncli.pictures.histories import history
 from heuncli.report.table_units import asked

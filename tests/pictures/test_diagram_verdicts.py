@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.drawing.canvas import Look
 from heuncli.drawing.figure import Blank, Trace
+from heuncli.drawing.letters import drawn as in_letters
 from heuncli.kinetostatics.section_axes import first_axis
 from heuncli.pictures.bars import WholeBar
 from heuncli.pictures.courses import Pictured
@@ -71,6 +73,14 @@ def test_what_no_law_decides_is_drawn_as_open_where_it_is() -> None:
         assert np.isnan(line.y[between]).all()
         assert (line.y[(line.x < 0.5) | (line.x > 1.5)] == 0.0).all()
     assert any(note.startswith("open: ") for note in figure.notes)
+
+
+def test_in_letters_hatches_are_dots_and_signs_are_plain() -> None:
+    """Where a terminal shows no braille: the curve alone has its letter, and the minus is one that it has."""
+    text = in_letters(drawn(study(HELD_TWICE), "along"), Look(80, braille=False, colours=False))
+    shear = text.partition("Q2 [N]")[2].partition("T [")[0].splitlines()
+    assert "\N{MINUS SIGN}" not in text
+    assert any("a" in line and "." in line and "+" in line for line in shear)
 
 
 def test_open_all_along_is_told_as_open() -> None:

@@ -87,9 +87,7 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
         volumes = [volume(shape) for shape in body.shapes or () if shape.type != "point"]
         if look.spread:
             volumes = [spread(body)]
-        with np.errstate(
-            invalid="ignore"
-        ):  # flat things have no volume to divide by
+        with np.errstate(invalid="ignore"):  # flat things have no volume to divide by
             told_volumes = [float(mesh.volume) for mesh in meshes]
         assert sorted(told_volumes) == pytest.approx(sorted(volumes), rel=1e-5, abs=1e-12)
         closed = [mesh for mesh, size in zip(meshes, told_volumes, strict=True) if size > 1e-12]

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from heuncli.results import Array
-from heuncli.scenery.views import View, view_of
+from heuncli.scenery.views import SceneView, view_of
 from heuncli.spec.load import load
 from tests.shared.command import Heun
 from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
@@ -41,7 +41,7 @@ def drawn(heun: Heun, spec: str, *words: str) -> tuple[PlottedPanel, list[str]]:
     return panel, texts_of(text)
 
 
-def seen_from(spec: str, words: str) -> View:
+def seen_from(spec: str, words: str) -> SceneView:
     """The view of a spec."""
     return view_of(words, np.array(load(str(SPECS / f"{spec}.yaml")).gravity, dtype=np.float64))
 

@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.drawing.figure import Figure, Label, Polygon, Strokes
+from heuncli.drawing.canvas import look_of
+from heuncli.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
 from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import drawn, look_of
+from heuncli.drawing.letters import drawn
 from heuncli.drawing.picture import Text, svg
 from heuncli.drawing.words import HIGH, wide
 from heuncli.pictures.courses import Pictured
@@ -100,7 +101,7 @@ def test_every_spec_is_drawn(path: Path) -> None:
 @pytest.mark.parametrize("path", SPECS[::4], ids=lambda path: path.stem)
 def test_no_words_of_labels_lie_on_each_other(path: Path) -> None:
     figure = as_assembled(load(str(path)))
-    names = {item.text for panel in figure.panels for item in panel.items if isinstance(item, Label)}
+    names = {item.text for panel in figure.panels for item in panel.items if isinstance(item, PlaceLabel)}
     shapes = [s for s in laid_out(figure).shapes if isinstance(s, Text) and s.halo and s.text in names]
     boxes = [(t.x, t.y, t.x + wide(t.text, t.size), t.y + HIGH * t.size) for t in shapes]
     for k, (a, b, c, d) in enumerate(boxes):

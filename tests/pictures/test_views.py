@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.errors import Finding
 from heuncli.pictures.scenes import as_assembled
-from heuncli.scenery.views import View, along, named, turned, view_of
+from heuncli.scenery.views import SceneView, along, named, turned, view_of
 from heuncli.spec.load import load
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -17,7 +17,7 @@ DOWN = np.array([0.0, 0.0, -9.81])
 NONE = np.zeros(3)
 
 
-def views(seed: int) -> list[View]:
+def views(seed: int) -> list[SceneView]:
     """Some of every kind."""
     random = np.random.default_rng(seed)
     gravity = random.choice([0.0, 1.0]) * random.normal(size=3)

@@ -8,9 +8,10 @@ from itertools import combinations
 import numpy as np
 import pytest
 
+from heuncli.drawing.canvas import Look
 from heuncli.drawing.figure import Figure, Panel, Scaling, Spot, Trace, Upright
 from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import Look, drawn
+from heuncli.drawing.letters import drawn
 from heuncli.drawing.picture import Mark, Text
 from heuncli.drawing.room import WordBox
 from heuncli.drawing.words import BASE, HIGH, SMALL, wide

@@ -13,11 +13,13 @@ from heuncli.report.cut_runs import extremes_of_samples, one_source, runs_of
 from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of
 from heuncli.report.text_table import TextTable
-from heuncli.results import Extremes, Place
+from heuncli.results import Array, Extremes, Place
 from heuncli.spec.load import load
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.model.setup import Setup
+from heuncli.study.search import stretches
 from heuncli.study.workflow import solve
 
 SPEC = """
@@ -114,3 +116,36 @@ def test_the_command_shows_stresses_of_runs(tmp_path: Path, capsys: pytest.Captu
     path.write_text(SPEC)
     assert enter(["run", str(path), "--only", "sections", "--at", "0.5"]) == 0
     assert "mises [MPa]" in capsys.readouterr().out
+
+
+LOADED_BOX = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {wall: [0, 0, 0]}}
+bodies:
+  beam:
+    shapes: [{type: box, center: [0.5, 0, 0], size: [1, 0.02, 0.02], density: 7850}]
+    points: {root: [0, 0, 0], tip: [1, 0, 0]}
+joints: {wall: {type: weld, from: ground.wall, to: beam.root}}
+forces: {load: {type: force, on: beam.tip, vector: [0, 0, -100]}}
+sections:
+  on: {body: beam, from: root, to: tip, count: 5, properties: {rectangle: {width: 0.02, height: 0.02}}, strength: 9e7}
+"""
+
+
+def test_the_place_of_a_stress_is_not_sought_in_rounding(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beyond the cuts of a box pieces are sums: a stress that is 0 all along is noise, of finer cuts ever more."""
+    asked: list[int] = []
+    cut_at = stretches.cut_at
+
+    def counted(setup: Setup, name: str, s: Array, ends: tuple[float, float]) -> Setup:
+        asked.append(len(s))
+        return cut_at(setup, name, s, ends)
+
+    monkeypatch.setattr(stretches, "cut_at", counted)
+    found = solve(load("box.yaml", LOADED_BOX), Options())
+    run = next(iter(runs_of(found.results, labels_of(found.spec))))
+    told = searches.of_run(run, page_of(found.results, labels_of(found.spec), found.magnitudes), found).stresses
+    assert told is not None
+    assert told.places[-1][1] == Place(0.0, "beyond", 0)  # of the utilisation
+    assert sum(asked) < 2000

@@ -16,7 +16,7 @@ from heuncli.oscillations.moved_bodies import MovedBodies, moved_bodies
 from heuncli.oscillations.without import without
 from heuncli.pictures.mode_shapes import mode_shapes
 from heuncli.scenery.machine import machine_of
-from heuncli.scenery.views import AZIMUTH, ELEVATION, View, turned, usual, view_of
+from heuncli.scenery.views import AZIMUTH, ELEVATION, SceneView, turned, usual, view_of
 
 
 def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
@@ -33,7 +33,7 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     return mode_shapes(found, machine_of(spec), _view(found, request))
 
 
-def _view(found: MovedBodies, request: PlotRequest) -> View:
+def _view(found: MovedBodies, request: PlotRequest) -> SceneView:
     """From where the modes are seen. Raises UsageError."""
     if request.view is None:
         seen = usual(found.scene, np.concatenate([found.places, found.centres]))

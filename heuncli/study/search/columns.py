@@ -152,7 +152,9 @@ class StudyColumns:
                 assert self.searched.along is not None and self.setup is not None
                 return self.searched.along(self.results(np.array([at]), cut_at(self.setup, name, s, ends)))[k][1].T
 
-            there = extremes.search(along, np.linspace(*ends, 17))
+            one = slice(len(self.searched.groups) + k, len(self.searched.groups) + k + 1)
+            errors, even = self.searched.errors[one], self.searched.even[one]
+            there = extremes.search(along, np.linspace(*ends, 17), errors=errors, even=even, sides=(side,))
             value, s = (float(x[0]) for x in ((there.high, there.high_at) if side > 0.0 else (there.low, there.low_at)))
             end = float(side_of(np.array(s), ends))
         return value, stretch_named(self.setup, name).place(s, end)
