@@ -6,6 +6,8 @@ extremes looks, both sides of every jump, and where these are few more between t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
@@ -18,6 +20,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
 from heuncli.variants.stated import error_of, unit_of
 
+CASE = " (case "  # behind a title
 ENOUGH = 400  # instants of a curve: two a pixel of a panel, nearly
 JUMP = 0.01  # of the span of a course: a jump that is drawn as one
 MOST = 4000  # of the instants at which extremes are looked for, as many as a picture can show
@@ -29,6 +32,14 @@ class Pictured:
 
     name: str
     study: Study
+
+
+def title_of(sources: Sequence[Pictured]) -> str:
+    """What one or several runs are of; their cases stand in the legend."""
+    titles = [source.study.results.title for source in sources]
+    if len(titles) == 1:
+        return titles[0]
+    return " · ".join(dict.fromkeys(title.rpartition(CASE)[0] or title for title in titles))
 
 
 class NumberCourse(NamedTuple):

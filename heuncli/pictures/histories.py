@@ -17,6 +17,7 @@ from heuncli.pictures.courses import (
     instants,
     jumps_of,
     require_one_number,
+    title_of,
     values_at,
 )
 from heuncli.pictures.happenings import instant, marks_of
@@ -36,7 +37,6 @@ STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
 OF_PATHS = 480.0  # pixels at most, of the path of a point
 MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
-CASE = " (case "  # behind a title
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
 ALL_OPEN = "open: the laws of rigid bodies do not give this number"
 # what is measured in a unit, as axes tell it
@@ -98,20 +98,13 @@ def history(
         panels.append(Panel(x._replace(label=""), y, tuple(items), height, equal))
     panels[-1] = panels[-1]._replace(x=x)
     return Figure(
-        _title([source.study.results.title for source in sources]),
+        title_of(sources),
         [sentence for source in sources for sentence in _words(source)],
         panels,
         [(each.name, each.pen) for each in drawn],
         [*_notes(drawn, panels), *notes],
         [(each.name, len(drawn) + k, "square") for k, each in enumerate(measured)],
     )
-
-
-def _title(titles: Sequence[str]) -> str:
-    """What several runs are of; their cases stand in the legend."""
-    if len(titles) == 1:
-        return titles[0]
-    return " · ".join(dict.fromkeys(title.rpartition(CASE)[0] or title for title in titles))
 
 
 def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) -> Iterator[PanelCourse]:

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Trace
 from heuncli.drawing.ticks import ends, ticks
 from heuncli.pictures.certain import certain
-from heuncli.pictures.courses import Pictured, vectors_at
+from heuncli.pictures.courses import Pictured, title_of, vectors_at
 from heuncli.pictures.polar_words import notes_of, seen
 from heuncli.pictures.tips import Largest, TipCurve, largest_of, tip_curves
 from heuncli.pictures.turning import TurningRun
@@ -48,8 +48,7 @@ def polar(
     panels = [_panel(group, largest, units) for group in groups.values()]
     words = list(seen(sources, curves, axes))
     notes = [note for curve in curves for note in notes_of(curve, largest[curve.pen], units)]
-    title = sources[0].study.results.title
-    return Figure(title, words, panels, [(curve.name, curve.pen) for curve in curves], notes)
+    return Figure(title_of(sources), words, panels, [(curve.name, curve.pen) for curve in curves], notes)
 
 
 def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:

@@ -14,7 +14,7 @@ from heuncli.commands.plot.request import PlotRequest
 from heuncli.commands.plot.sources import solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Problem
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.courses import Pictured, title_of
 from heuncli.pictures.scenes import scene
 from heuncli.pictures.traces import CENTER
 from heuncli.results import Array
@@ -40,7 +40,7 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     words = [f"{source.name}: {sentence}" for source, each in several for sentence in each.words]
     panels = [panel for each in figures for panel in each.panels]
     notes = [f"{source.name}: {note}" for source, each in several for note in each.notes]
-    return Figure(figures[0].title, words, panels, (), notes)
+    return Figure(title_of(sources), words, panels, (), notes)
 
 
 def _path(name: str) -> str:
