@@ -91,6 +91,14 @@ def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path, way
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
 
 
+def test_a_small_vector_beside_a_large_one_has_to_come_back_too(heun: Heun, folder: Path) -> None:
+    """A moment of thousandths that grows, beside a force of tens that turns evenly."""
+    growing = "forces: {twist: {type: couple, on: crank, vector: [0.001*t, 0, 0]}}\n"
+    (folder / "growing.yaml").write_text(CRANK.replace("LAW", '"2*pi*t"') + growing)
+    _, words = drawn(heun, "growing.yaml", "polar", "joints.main", "joints.main.moment")
+    assert "the whole run, t = 0 to 3 s" in words
+
+
 def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:
     text = CRANK.replace("axis: [0, 0, 1]", "axis: [0, 1, 2]").replace("LAW", '"10*t"')
     (folder / "slanted.yaml").write_text(text)
