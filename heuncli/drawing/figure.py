@@ -157,10 +157,7 @@ class Bars(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """A field: values (n_y, n_x) in cells with edges (n_x + 1,) and (n_y + 1,); nan is left empty, what is the unit.
-
-    level: of lines of the same value, at which values they are drawn.
-    """
+    """A field: values (n_y, n_x) in cells with edges (n_x + 1,) and (n_y + 1,), shaded by value; nan is empty."""
 
     name: str
     x_edges: Array

@@ -55,7 +55,7 @@ def mode_shapes(found: MovedBodies, machine: Machine, view: SceneView) -> Figure
     if not modes:
         raise NotDrawable("modes: nothing is free to oscillate", "heun run moves what is driven")
     lines = list(_lines(found, machine))
-    supports = list(_supports(found, machine))
+    supports = list(_supports(machine))
     resting = np.concatenate([line.points for line in lines])
     extent = float(np.ptp(view.flat(resting), axis=0).max()) or 1.0
     drawn = [_drawn(found, k, mode, lines, extent) for k, mode in enumerate(modes[:MOST])]
@@ -96,7 +96,7 @@ def _cross(body: Body) -> list[Array]:
     return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(reach, np.eye(3), strict=True)]
 
 
-def _supports(found: MovedBodies, machine: Machine) -> Iterator[Array]:
+def _supports(machine: Machine) -> Iterator[Array]:
     """Where joints stand on the ground, (3,)."""
     for joint in machine.joints:
         if joint.a == GROUND:

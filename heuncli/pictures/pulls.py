@@ -16,6 +16,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.machine_items import on_paper
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Block
+from heuncli.results_schema import AT_A_BLOW
 from heuncli.scenery.views import SceneView
 from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
@@ -33,7 +34,6 @@ MOST_VALUES = 16  # arrows whose values are written beside them
 TEETH = 9  # arrows of a distributed load
 DIGITS = 3  # of these values
 KINDS = ((JOINTS_PEN, "of joints, from ON to"), (APPLIED_PEN, "applied"))
-PER_TIME = {"N": "N·s", "N·m": "N·m·s"}  # of a blow
 
 
 class Pull(NamedTuple):
@@ -74,7 +74,7 @@ class Pulls(NamedTuple):
     def unit(self, units: Units, *, turning: bool = False) -> tuple[str, float]:
         """The unit shown, and how many of it one in SI is."""
         unit = "N·m" if turning else "N"
-        return units.of(PER_TIME[unit] if self.struck else unit)
+        return units.of(AT_A_BLOW[unit] if self.struck else unit)
 
 
 NOTHING = Pulls((), (), ())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
-from heuncli.cli import alarm, measure
+from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
@@ -20,19 +20,9 @@ from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.reading import STANDARD_INPUT
-from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
-
-
-def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
-    """The runs, in the order of the files and of their cases; what they are warned of is told."""
-    specs = specs_of(files, request)
-    asked = [MeasureRequest("", path) for path in paths]
-    for _, spec in specs:
-        measure.check(asked, spec, "heun plot")
-    return [solution(name, spec, paths, request) for name, spec in specs]
 
 
 def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
