@@ -66,9 +66,9 @@ def written(value: float, places: int) -> str:
     return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
-def short(value: float) -> str:
-    """A number to six digits, its exponent short: 1e7, 2.5e-6."""
-    mantissa, e, exponent = f"{value:.6g}".partition("e")
+def short(value: float, digits: int = 6) -> str:
+    """A number to six digits, or to fewer, its exponent short: 1e7, 2.5e-6; whole ones below a million without one."""
+    mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
     return mantissa + (f"e{int(exponent)}" if e else "")
 
 

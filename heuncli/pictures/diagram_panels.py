@@ -11,6 +11,7 @@ from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Stro
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.bars import AlongBar, Extreme, Reach, WholeBar
+from heuncli.pictures.happenings import instant
 from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
@@ -177,8 +178,8 @@ def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
         (value,) = write([to.value * one.value], how)
         line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest
         s = first_place(one, line, error)
-        where = [] if steady else [f"s = {short(float(f'{to.s * s:.4g}'))} {to.units[0]}"]
-        when = [f"t = {short(float(f'{one.at:.4g}'))} s"] if reach is not None and varies_at(s, reach, error) else []
+        where = [] if steady else [f"s = {short(to.s * s, 4)} {to.units[0]}"]
+        when = [f"t = {instant(one.at)}"] if reach is not None and varies_at(s, reach, error) else []
         text = f"{value} at {', '.join([*where, *when])}" if where or when else value
         yield Spot(to.s * s, to.up * to.value * one.value, text, drawn.pen, filled=True)
 

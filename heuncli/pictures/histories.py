@@ -239,7 +239,7 @@ def _place(drawn: PanelCourse, peak: Peak, across: Across) -> tuple[float, str]:
     if across.over is None:
         return peak.at, instant(peak.at)
     x = across.size * float(values_at(drawn.source.study, across.over, np.array([peak.at]))[0])
-    return x, f"{short(float(f'{x:.4g}'))} {'' if across.unit == '1' else across.unit}".rstrip()
+    return x, f"{short(x, 4)} {'' if across.unit == '1' else across.unit}".rstrip()
 
 
 def figures(value: float, error: float, size: float) -> str:
@@ -249,7 +249,7 @@ def figures(value: float, error: float, size: float) -> str:
     known = DIGITS
     if error > 0.0:
         known = min(DIGITS, math.floor(math.log10(abs(value))) - math.floor(math.log10(error)))
-    return short(float(f"{size * value:.{max(known, 1)}g}"))
+    return short(size * value, max(known, 1))
 
 
 def _words(source: Pictured) -> Iterator[str]:

@@ -64,7 +64,7 @@ def _where(curve: TipCurve, largest: Largest) -> str:
     """The direction, the instant and the crank's angle of the largest."""
     first, second = curve.plane.names
     way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
+    when = f"at t = {short(largest.at, 5)} s"
     turning = curve.turning
     if turning.path:
         angle = float(np.interp(largest.at, turning.times, turning.counted))

@@ -186,7 +186,7 @@ def _force(pull: Pull, view: SceneView, size: float, scale: float, least: float)
 def _value(pull: Pull, place: Array, unit: str, of_it: float) -> PlaceLabel:
     """Its magnitude, and the name of what is applied."""
     applied = pull.pen == APPLIED_PEN
-    text = f"{pull.name} " * applied + f"{_digits(of_it * pull.size)} {unit}"
+    text = f"{pull.name} " * applied + f"{short(of_it * pull.size, DIGITS)} {unit}"
     return PlaceLabel(*on_paper(place), text, pull.name if applied else "", pull.pen, spare=not applied)
 
 
@@ -201,7 +201,7 @@ def _comb(one: SpreadLoad, pulls: Pulls, view: SceneView, size: float, side: flo
         yield Arrow(tail[0], tail[1], way[0], way[1], APPLIED_PEN)
     yield Strokes(np.stack([tails[:-1], tails[1:]], axis=1), APPLIED_PEN)
     (force, of_force), (length, of_length) = units.of("N"), units.of("m")
-    values = [_digits(of_force / of_length * float(np.linalg.norm(density))) for density in one.densities]
+    values = [short(of_force / of_length * float(np.linalg.norm(density)), DIGITS) for density in one.densities]
     text = f"{one.name} {' to '.join(dict.fromkeys(values))} {force}/{length}"
     yield PlaceLabel(*on_paper(tails[TEETH // 2]), text, one.name, APPLIED_PEN)
 
@@ -220,8 +220,3 @@ def round_below(value: float) -> float:
     """The largest of 1, 2, 5, 10, 20, ... that is not above half a number."""
     power = 10.0 ** math.floor(math.log10(0.5 * value))
     return next(m * power for m in (5.0, 2.0, 1.0) if m * power <= 0.5 * value * (1.0 + 1e-12))
-
-
-def _digits(value: float) -> str:
-    """A value in few digits."""
-    return short(float(f"{value:.{DIGITS}g}"))
