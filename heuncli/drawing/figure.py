@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
+HEIGHT = 170.0  # pixels of a panel, as a rule
+
 
 class Trace(NamedTuple):
     """A line through points (n,), broken where one is nan; thin: what stands beside a curve that matters more."""
@@ -211,7 +213,7 @@ class Panel(NamedTuple):
     x: Scaling
     y: Scaling
     items: tuple[Item, ...]
-    height: float = 170.0
+    height: float = HEIGHT
     equal: bool = False
     bare: bool = False
     title: str = ""

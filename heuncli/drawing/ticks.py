@@ -72,6 +72,11 @@ def short(value: float, digits: int = 6) -> str:
     return mantissa + (f"e{int(exponent)}" if e else "")
 
 
+def near_zero(low: float, high: float) -> bool:
+    """Whether zero belongs on an axis: it is in reach of what is drawn, beside how far that goes."""
+    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
+
+
 def ends(low: float, high: float, *, zero: bool = False, spare: float = SPARE) -> tuple[float, float]:
     """The ends of an axis for values between these, with room beyond; zero: it is on the axis, too."""
     if zero:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
-from heuncli.drawing.ticks import ends, short
+from heuncli.drawing.figure import HEIGHT, Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
+from heuncli.drawing.ticks import ends, near_zero, short
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import (
     NumberCourse,
@@ -20,6 +20,7 @@ from heuncli.pictures.courses import (
     title_of,
     values_at,
 )
+from heuncli.pictures.error_bands import is_seen
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measured_points import MeasuredPoints, seen
 from heuncli.pictures.refusals import NotDrawable
@@ -31,10 +32,9 @@ from heuncli.study.ask.measure import Peak
 from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
-VISIBLE = 0.5  # pixels: half of a band, below which that of an error is not seen
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
 STEADY = 1e-9  # of its size: what varies by less does not vary
-HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
+HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel that stands alone, of each of two, of more
 OF_PATHS = 480.0  # pixels at most, of the path of a point
 MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
@@ -170,7 +170,7 @@ def _axis_up(unit: str, drawn: Sequence[PanelCourse], measured: Sequence[Measure
     band = size * (low - reach), size * (high + reach)  # of errors, which may reach farther than what is drawn
     if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
-    low, high = ends(size * low, size * high, zero=_near_zero(low, high), spare=SPARE)
+    low, high = ends(size * low, size * high, zero=near_zero(low, high), spare=SPARE)
     return Scaling(label, min(low, band[0]), max(high, band[1]))
 
 
@@ -183,11 +183,6 @@ def _range(values: Array) -> tuple[float, float]:
     """The least and the greatest that is known; 0 and 1 where nothing is."""
     known = values[np.isfinite(values)]
     return (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-
-
-def _near_zero(low: float, high: float) -> bool:
-    """Whether zero belongs on an axis: it is in reach of what is drawn, beside how far that goes."""
-    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
 def _blanks(sources: Sequence[Pictured], drawn: Sequence[PanelCourse], x: Scaling, across: Across) -> Iterator[Item]:
@@ -208,7 +203,7 @@ def _curves(drawn: Sequence[PanelCourse], y: Scaling, size: float, across: Acros
     for each in drawn:
         values, x = size * each.course.values, across.size * each.x
         error = size * (each.course.error or 0.0)
-        if error * height > VISIBLE * (y.high - y.low) and np.isfinite(error):
+        if is_seen(error, y, height):
             yield Band(f"stated error of {each.name}", x, values - error, values + error, each.pen)
         yield Trace(each.name, x, values, each.pen)
     for each in drawn:
