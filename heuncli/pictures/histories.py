@@ -19,6 +19,7 @@ from heuncli.pictures.courses import (
     require_one_number,
     title_of,
     values_at,
+    varies,
 )
 from heuncli.pictures.error_bands import is_seen
 from heuncli.pictures.happenings import instant, marks_of
@@ -33,7 +34,6 @@ from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
-STEADY = 1e-9  # of its size: what varies by less does not vary
 HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel that stands alone, of each of two, of more
 OF_PATHS = 480.0  # pixels at most, of the path of a point
 MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
@@ -168,7 +168,7 @@ def _axis_up(unit: str, drawn: Sequence[PanelCourse], measured: Sequence[Measure
     error = max(each.course.error or 0.0 for each in drawn)
     reach = error if math.isfinite(error) else 0.0
     band = size * (low - reach), size * (high + reach)  # of errors, which may reach farther than what is drawn
-    if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
+    if not varies(low, high, error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
     low, high = ends(size * low, size * high, zero=near_zero(low, high), spare=SPARE)
     return Scaling(label, min(low, band[0]), max(high, band[1]))
@@ -213,12 +213,12 @@ def _curves(drawn: Sequence[PanelCourse], y: Scaling, size: float, across: Acros
 def _extremes(drawn: PanelCourse, size: float, across: Across) -> Iterator[Spot]:
     """The lowest and the highest with their values and instants; of what does not vary its value."""
     low, high, error = drawn.course.low, drawn.course.high, drawn.course.error or 0.0
-    varies = high.value - low.value > max(STEADY * max(abs(low.value), abs(high.value)), 2.0 * error)
-    for word, peak in (("greatest", high), ("least", low)) if varies else (("", high),):
+    is_varying = varies(low.value, high.value, error)
+    for word, peak in (("greatest", high), ("least", low)) if is_varying else (("", high),):
         if peak.at is None or not math.isfinite(peak.value):
             continue
         x, at = _place(drawn, peak, across)
-        if varies:
+        if is_varying:
             text = f"{figures(peak.value, error, size)} at {at}"
         else:
             text = figures(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")

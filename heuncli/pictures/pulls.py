@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.drawing.figure import Arrow, Item, PlaceLabel, Strokes, Symbol
 from heuncli.drawing.ticks import short
 from heuncli.kinetostatics.actions import AppliedLoad
@@ -20,7 +21,6 @@ from heuncli.results_schema import AT_A_BLOW
 from heuncli.scenery.views import SceneView
 from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
-from heuncli.tolerances import EPS
 
 JOINTS_PEN, APPLIED_PEN = 1, 3
 LOADS = frozenset({"joints"})
@@ -28,7 +28,6 @@ LONGEST = 0.2  # of the picture's larger side: the arrow of the largest
 HIGHEST = 0.08  # of it: a distributed load where it is densest
 LEAST = 0.004  # of it: what is shorter is seen from its end
 SMALL = 1e-4  # of the largest: what is less is not drawn
-ROUNDED = 100.0 * EPS  # of what numbers are summed from: what is less is rounding
 FACING = 0.95  # of a moment that must be about the line of sight to be drawn
 MOST_VALUES = 16  # arrows whose values are written beside them
 TEETH = 9  # arrows of a distributed load
@@ -98,7 +97,7 @@ def pulls_of(study: Study, t: float) -> Pulls:
             found.append(Pull(own.load.name, own.action.to.position[0], vector[0], APPLIED_PEN, turns))
     of = study.load_magnitudes
     rounding = {
-        turns: max(ROUNDED * of.by_unit.get(unit, 0.0), of.errors.get(("reactions", unit), 0.0))
+        turns: max(tolerances.NOTHING_ACTS * of.by_unit.get(unit, 0.0), of.errors.get(("reactions", unit), 0.0))
         for turns, unit in ((False, "N"), (True, "N·m"))
     }
     return _pulls(found, spreads, rounding)
