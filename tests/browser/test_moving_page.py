@@ -19,8 +19,8 @@ OUTSIDE = """[...document.querySelectorAll("button, input, select, canvas")].fil
 }).map(e => e.id)"""
 TOO_WIDE = """[...document.querySelectorAll("#numbers td, #numbers th")]
   .filter(e => e.scrollWidth > e.clientWidth && !e.querySelector(".hidden")).map(e => e.textContent)"""
-LONGEST = """document.querySelectorAll("#numbers td[data-path]").forEach(
-  e => { e.textContent = "\\u22121.23456e\\u221212"; })"""
+LONGEST = """document.querySelectorAll("#numbers td[data-path], #numbers td.unit").forEach(
+  e => { e.textContent = e.className ? "kN\\u00b7mm\\u00b7s" : "\\u22121.23456e\\u221212"; })"""
 KEEP_FRAMES = f"""(window.seen = [],
   new MutationObserver(() => seen.push({FRAME})).observe(document.documentElement, {{attributes: true}}))"""
 OPERATED = {"button", "checkbox", "combobox", "slider", "application", "DisclosureTriangle", "region"}
