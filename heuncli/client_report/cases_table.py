@@ -30,7 +30,7 @@ from heuncli.telling.envelopes import Bound
 MOST_CASES = 12  # told in a line each; of more those that govern
 GOVERNS = "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open"
 PARTLY = "*"
-STEADY = "without an instant: the same at all instants, to the digits shown"
+STEADY = "without an instant: the same at all {}, to the digits shown"
 ERRORS = "±: the error that the run states of the number, rounding included"
 LACKING = "numbers that are open or not known, and may be larger, stand in the cases left out here: {}"
 FEW_CASES = "of {} load cases those that govern a number; heun run SPEC --case all has all"
@@ -197,7 +197,7 @@ def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator
     if cells:
         yield ERRORS
     if cells and timed(of):
-        yield STEADY
+        yield STEADY.format("instants" if all(run.searched for run in of.runs) else "samples")
     yield ZERO_NOTE
     if OPEN in words:
         yield OPEN_NOTE

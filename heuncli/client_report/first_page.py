@@ -69,6 +69,9 @@ def _ended(of: Reported) -> Iterator[Sentence]:
         if (horizon := run.results.accuracy.get("horizon")) is not None:
             text = f"{case}from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 there"
             yield Sentence(f"{text}. All extremes are those before.", "unsure")
+        if not run.searched:
+            instants = count(len(run.page.results.time), "instant")
+            yield Sentence(f"{case}extremes are those of {instants} alone; between them loads may be larger.", "unsure")
 
 
 def _checked(of: Reported) -> Iterator[Sentence]:
@@ -109,7 +112,8 @@ def _used(of: Reported) -> Iterator[Sentence]:
     text = f"Largest utilisation of strength{known}: {most.high_text()} in section {most.name}{most.where}."
     text += f" Beyond strength: {some(beyond)}." if beyond else ""
     text += f" Beyond it, if the stated error is added: {some(near)}." if near else ""
-    yield Sentence(text, "bad" if beyond else "unsure" if known or near else "good")
+    certain = not (known or near) and all(run.searched for run in of.runs)
+    yield Sentence(text, "bad" if beyond else "good" if certain else "unsure")
 
 
 def _known(of: Reported, paths: Sequence[str]) -> str:

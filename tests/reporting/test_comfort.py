@@ -96,6 +96,13 @@ def test_strength_within_the_stated_error_is_no_comfort(heun: Heun, folder: Path
         assert ("Beyond it, if the stated error is added: mid." in own) == told, own
 
 
+def test_extremes_of_samples_alone_are_told_first(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said = "extremes are those of 21 instants alone"
+    assert said not in read_of(heun, folder, SWING).by_tag["header"][0]
+    monkeypatch.setattr("heuncli.telling.keep.MOST_SEARCHED", 0)
+    assert said in read_of(heun, folder, SWING).by_tag["header"][0]
+
+
 def test_checks_of_other_cases_are_not_taken_for_none(heun: Heun, folder: Path) -> None:
     text = BEAM.replace("CASES", "loose: {set: {P: 3 kN}}")
     text += "expect: [{of: foundation.force.y, case: firm, below: 0}]\n"
