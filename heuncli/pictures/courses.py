@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.records import record
@@ -87,6 +88,11 @@ def instants(study: Study, most: int = MOST) -> Array:
     found = distinct(np.concatenate([times, looked_at, even]))
     horizon = results.accuracy.get("horizon")
     return np.asarray(found if horizon is None else found[found < horizon])
+
+
+def varies(low: float, high: float, error: float) -> bool:
+    """Whether a number that is known to an error varies between a lowest and a highest value, both of it."""
+    return high - low > max(tolerances.THROUGHOUT * max(abs(low), abs(high)), 2.0 * error)
 
 
 def jumps_of(course: NumberCourse) -> Array:

@@ -20,13 +20,13 @@ import numpy as np
 
 from heuncli.drawing.figure import Blank, Figure, Panel, Scaling, Upright
 from heuncli.drawing.ticks import ends, short
-from heuncli.pictures.bars import UNITS, WholeBar
+from heuncli.pictures.bars import WholeBar
 from heuncli.pictures.courses import Pictured, title_of
 from heuncli.pictures.diagram_panels import DrawnBar, diagram
 from heuncli.report.digits import OPEN, OPEN_NOTE, rough
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
-from heuncli.results_schema import RESULTANTS
+from heuncli.results_schema import RESULTANT_UNITS, RESULTANTS
 
 TURNED = frozenset({"M2"})  # whose ordinates point against e1, where they point to the side in tension
 SIDES = {"M1": "e2 up", "M2": "e1 up"}
@@ -151,7 +151,7 @@ def _verdict(drawn: DrawnBar, quantity: str) -> str:
         return "zero"
     if not drawn.is_zero(quantity):
         return "some"
-    family = [q for q in RESULTANTS if UNITS[q] == UNITS[quantity]]
+    family = [q for q in RESULTANTS if RESULTANT_UNITS[q] == RESULTANT_UNITS[quantity]]
     return "within" if any(not drawn.is_zero(q) for q in family) else "unknown"
 
 

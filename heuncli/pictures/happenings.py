@@ -62,7 +62,7 @@ def told(words: str, at: float) -> str:
 
 def instant(at: float) -> str:
     """An instant in words."""
-    return f"{short(float(f'{at:.4g}'))} s"
+    return f"{short(at, 4)} s"
 
 
 def _near(known: Array, at: float) -> bool:

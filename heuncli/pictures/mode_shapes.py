@@ -99,7 +99,7 @@ def _cross(body: Body) -> list[Array]:
     return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(reach, np.eye(3), strict=True)]
 
 
-def _supports(found: MovedBodies, machine: Machine) -> Iterator[Array]:
+def _supports(machine: Machine) -> Iterator[Array]:
     """Where joints stand on the ground, (3,)."""
     for joint in machine.joints:
         if joint.a == GROUND:

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Pictured, instants, vectors_at
+from heuncli.pictures.courses import Pictured, instants, varies, vectors_at
 from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.pictures.turning import TurnedVectors, TurningRun, angles_of, turning_of
@@ -21,8 +21,6 @@ from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.search import extremes
 from heuncli.variants.stated import unit_of
-
-EQUAL = 1e-9  # of the largest vector: no larger than others that differ by less
 
 
 class TipCurve(NamedTuple):
@@ -123,4 +121,4 @@ def largest_of(curve: TipCurve) -> Largest | None:
     x, y = float(vector @ plane.right), float(vector @ plane.up)
     size, error = math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error
     least = float(np.nanmin(np.hypot(curve.x, curve.y)))
-    return Largest(x, y, size, error, at, size - least <= max(error, EQUAL * size))
+    return Largest(x, y, size, error, at, not varies(least, size, error))

@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -21,7 +22,6 @@ from heuncli.study.ask.study import Study
 
 TURN = 2.0 * math.pi
 LEAST = 0.25 * TURN  # what turns less is no crank
-SAME = 2e-3  # of the largest of a vector: a pixel of the picture
 CLOSELY = 721  # instants of what is drawn
 COMPARED = 128  # angles of a cycle at which it is held against the one before
 ALMOST = 1e-6  # of a turn: a run that was to end with it
@@ -106,7 +106,7 @@ def comes_back(study: Study, whole: TurningRun, turns: int, vectors: TurnedVecto
     back = angle * np.linspace(1.0, 0.0, COMPARED)
     last, before = (vectors.at(instants_at(near, near.angles[-1] - back - k * angle)) for k in (0, 1))
     size, off = (np.nanmax(np.abs(own), axis=(0, 2), initial=0.0) for own in (last, last - before))
-    return bool((off <= np.maximum(SAME * size, 2.0 * vectors.errors)).all())  # each by its own size
+    return bool((off <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all())  # each by its own size
 
 
 def last_of(study: Study, whole: TurningRun, turns: int) -> TurningRun:
