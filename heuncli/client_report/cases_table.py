@@ -30,8 +30,9 @@ from heuncli.telling.envelopes import Bound
 MOST_CASES = 12  # told in a line each; of more those that govern
 GOVERNS = "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open"
 PARTLY = "*"
-STEADY = "without an instant: the same at all instants, to the digits shown"
+STEADY = "without an instant: the same at all {}, to the digits shown"
 ERRORS = "±: the error that the run states of the number, rounding included"
+LACKING = "numbers that are open or not known, and may be larger, stand in the cases left out here: {}"
 FEW_CASES = "of {} load cases those that govern a number; heun run SPEC --case all has all"
 
 
@@ -54,6 +55,7 @@ def cases_table(
     below = [*_notes(of, rows), *notes]
     below += [NOT_SEARCHED] if not all(run.searched for run in of.runs) else []
     below += [FEW_CASES.format(len(of.runs))] if len(shown) < len(of.runs) else []
+    below += [LACKING.format(some(hidden))] if (hidden := _hidden(of, groups, shown)) else []
     below += [f"0 throughout: {some(nothing)}"] if nothing else []
     return ReportTable(caption, _columns(of, along=along) if rows else [], rows, below)
 
@@ -64,6 +66,14 @@ def _shown(of: Reported, groups: Sequence[LoadGroup], governs: Governing) -> set
         return {run.name for run in of.runs}
     bounds = [found(row.path) for group in groups for row in group.rows for found in (governs.low, governs.high)]
     return {bound.case for bound in bounds if bound is not None}
+
+
+def _hidden(of: Reported, groups: Sequence[LoadGroup], shown: set[str]) -> list[str]:
+    """The cases without a line in which some number is open or not known, and so may govern after all."""
+    found = [
+        run.name for group in groups for row in group.rows for run, ends in runs_in(of, row.path) if not ends.whole
+    ]
+    return [name for name in dict.fromkeys(found) if name not in shown]
 
 
 def _columns(of: Reported, *, along: bool) -> list[TextColumn]:
@@ -118,7 +128,7 @@ def _lines(
     written = list(_written(of, group))
     told = [one for one in written if one.words not in ({"0"}, {OPEN})]
     beside = Counter(one.row.vector for one in told if not one.row.even)
-    told = [one for one in told if not (one.row.even and beside[one.row.vector] == 1)]  # says nothing new
+    told = [one for one in told if not (one.row.even and one.row.vector and beside[one.row.vector] == 1)]  # nothing new
     for one in told:
         yield from _of_cases(of, one, shown, governs, along=along)
     if opened := [one.row.label for one in written if one.words == {OPEN}]:
@@ -146,8 +156,9 @@ def _of_cases(
             continue
         bold = several and not one.row.even and _is(low, run), several and _is(high, run)
         case = [run.told] if of.has_cases else []
-        error = rough(ends.error * one.size)
-        cells = _cells(of, run, ends, one.texts[run.name], bold, along=along)
+        texts = one.texts[run.name]
+        error = "" if texts == (OPEN, OPEN) else rough(ends.error * one.size)
+        cells = _cells(of, run, ends, texts, bold, along=along)
         label = lead[0] + PARTLY * ends.parts_open
         yield (ReportCell(label), ReportCell(lead[1]), *map(ReportCell, case), *cells, ReportCell(error))
         lead = ["", ""]
@@ -186,7 +197,7 @@ def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator
     if cells:
         yield ERRORS
     if cells and timed(of):
-        yield STEADY
+        yield STEADY.format("instants" if all(run.searched for run in of.runs) else "samples")
     yield ZERO_NOTE
     if OPEN in words:
         yield OPEN_NOTE

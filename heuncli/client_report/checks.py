@@ -8,7 +8,7 @@ from heuncli.report.text_table import TextColumn
 from heuncli.telling.outcomes import Outcome
 from heuncli.variants.stated import unit_of
 
-NONE = "The spec expects nothing."
+NONE, NOT_HERE = "The spec expects nothing.", "The spec expects nothing of what is reported."
 HOLDS, FAILS = "holds", "FAILS"
 HEADS = ("line", "case", "of", "unit", "at", "expected", "found", "allowed", "verdict")
 NUMBERS = frozenset({"line", "expected", "found", "allowed"})
@@ -17,7 +17,7 @@ NUMBERS = frozenset({"line", "expected", "found", "allowed"})
 def check_parts(of: Reported) -> list[Part]:
     """A line for each expectation."""
     if not of.outcomes:
-        return [Sentence(NONE)]
+        return [Sentence(NOT_HERE if of.unchecked else NONE)]
     cases = any(outcome.case for outcome in of.outcomes)
     heads = [head for head in HEADS if cases or head != "case"]
     columns = [TextColumn(head, "point" if head in NUMBERS else "left") for head in heads]

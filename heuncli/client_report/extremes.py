@@ -31,7 +31,7 @@ class ReachedExtreme(NamedTuple):
 class Ends(NamedTuple):
     """The lowest and the highest of a number in one case, and the error that its run states [SI].
 
-    parts_open: whether it is open at some of the instants.
+    parts_open: whether it is open at some of the instants; whole: whether it is known at all of them.
     """
 
     low: ReachedExtreme
@@ -39,6 +39,7 @@ class Ends(NamedTuple):
     error: float
     unit: str
     parts_open: bool
+    whole: bool
 
     @property
     def values(self) -> list[float]:
@@ -76,9 +77,10 @@ def _placed(end: ReachedExtreme, run: ReportedRun, path: str, which: Callable[[A
 def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
     low = ReachedExtreme(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
     high = ReachedExtreme(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
-    is_open = OPEN in (*lowest.values.values(), *highest.values.values())
+    words = {word for word in (*lowest.values.values(), *highest.values.values()) if isinstance(word, str)}
+    is_open = OPEN in words
     parts = is_open and isinstance(low.value, float) and isinstance(high.value, float)
-    return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts)
+    return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts, not words - {BEYOND})
 
 
 class Governing(NamedTuple):
@@ -141,11 +143,11 @@ def instant_text(at: float | None, run: ReportedRun) -> str:
 
 
 class GreatestOfCases(NamedTuple):
-    """A number over all cases, ready to be told in a sentence; high: the highest, None where it is not known."""
+    """A number over all cases, ready to be told in a sentence; high: the highest."""
 
     name: str
     unit: str
-    high: Bound | None
+    high: Bound
     error: float
     how: Style
     size: float
@@ -154,7 +156,6 @@ class GreatestOfCases(NamedTuple):
 
     def high_text(self) -> str:
         """The highest with its unit and its error."""
-        assert self.high is not None
         unit = f" {self.unit}" if self.unit != "1" else ""
         return f"{self.how.write(self.high.value * self.size)}{unit} (± {rough(self.error * self.size)}{unit})"
 
@@ -163,12 +164,12 @@ class GreatestOfCases(NamedTuple):
         """Where, when and in which case that is."""
         parts = [f"at s = {self.place}"] if self.place else []
         parts += [f"at t = {self.at} s"] if self.at else []
-        parts += [f"in case {self.high.case}"] if self.high and self.high.case else []
+        parts += [f"in case {self.high.case}"] if self.high.case else []
         return "".join(f", {part}" for part in parts)
 
 
 def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
-    """The highest of a number over all cases; None where no case has it, or it is 0 in all."""
+    """The highest of a number over all cases; None where no case knows it, or it is 0 in all."""
     found = {run.name: ends for run in of.runs if (ends := ends_of(run, path)) is not None}
     known = {case: ends for case, ends in found.items() if isinstance(ends.high.value, float)}
     if not known:
@@ -183,6 +184,11 @@ def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
     steady = ends.high.place is None and is_steady(ends, how, size)
     at = "" if steady else instant_text(ends.high.at, run)
     return GreatestOfCases(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
+
+
+def lacking(of: Reported, path: str) -> list[str]:
+    """The cases in which a number is open or not known at some instant: it may be larger there."""
+    return [run.told for run, ends in runs_in(of, path) if not ends.whole]
 
 
 def runs_in(of: Reported, path: str) -> Iterator[tuple[ReportedRun, Ends]]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.client_report.extremes import GreatestOfCases, spread_of
-from heuncli.client_report.parts import Facts, Part, Sentence, some
+from heuncli.client_report.extremes import GreatestOfCases, lacking, spread_of
+from heuncli.client_report.parts import Facts, Mood, Part, Sentence, some
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
 from heuncli.report.impulse_tables import sizes_of
@@ -69,6 +69,9 @@ def _ended(of: Reported) -> Iterator[Sentence]:
         if (horizon := run.results.accuracy.get("horizon")) is not None:
             text = f"{case}from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 there"
             yield Sentence(f"{text}. All extremes are those before.", "unsure")
+        if not run.searched:
+            instants = count(len(run.page.results.time), "instant")
+            yield Sentence(f"{case}extremes are those of {instants} alone; between them loads may be larger.", "unsure")
 
 
 def _checked(of: Reported) -> Iterator[Sentence]:
@@ -77,51 +80,62 @@ def _checked(of: Reported) -> Iterator[Sentence]:
     if failed:
         names = some([outcome.name for outcome in failed])
         total = len(of.outcomes)
-        yield Sentence(f"{len(failed)} of {count(total, 'check')} of the spec FAIL: {names}.", "bad")
+        text = f"{len(failed)} of {count(total, 'check')} of the spec FAIL: {names}."
+        yield Sentence(text + _unchecked(of), "bad")
     elif of.outcomes:
         text = "all of them hold" if len(of.outcomes) > 1 else "it holds"
-        yield Sentence(f"{count(len(of.outcomes), 'check')} of the spec: {text}.", "good")
+        mood: Mood = "unsure" if of.unchecked else "good"
+        yield Sentence(f"{count(len(of.outcomes), 'check')} of the spec: {text}.{_unchecked(of)}", mood)
+    elif of.unchecked:
+        yield Sentence(f"No result was checked.{_unchecked(of)}", "unsure")
     else:
         yield Sentence("The spec expects nothing: no result was checked against a known number.", "unsure")
 
 
+def _unchecked(of: Reported) -> str:
+    """Of which scenes what the spec expects was not looked at."""
+    return f" Not checked, as it was not asked for: {some(of.unchecked)}." if of.unchecked else ""
+
+
 def _used(of: Reported) -> Iterator[Sentence]:
     """The section that is used most, and those beyond their strength."""
-    found = [spread for spread in _of_sections(of, "utilisation") if spread.high is not None]
+    paths = {f"sections.{name}.stress.utilisation": name for name in of.runs[0].results.sections}
+    known = _known(of, list(paths))
+    found = [spread for path, name in paths.items() if (spread := spread_of(of, path, name)) is not None]
     if not found:
+        if known:
+            yield Sentence("No utilisation of strength is known: what loads the sections is open.", "unsure")
         return
-    beyond = [spread.name for spread in found if spread.high is not None and spread.high.value > 1.0]
-    most = max(found, key=lambda spread: spread.high.value if spread.high else 0.0)
-    what = f"Largest utilisation of strength{_known(of, 'sections')}"
-    text = f"{what}: {most.high_text()} in section {most.name}{most.where}."
-    if beyond:
-        yield Sentence(f"{text} Beyond strength: {some(beyond)}.", "bad")
-    else:
-        yield Sentence(text, "unsure" if _known(of, "sections") else "good")
+    beyond = [spread.name for spread in found if spread.high.value > 1.0]
+    near = [spread.name for spread in found if spread.high.value <= 1.0 < spread.high.value + spread.error]
+    most = max(found, key=_greatest)
+    text = f"Largest utilisation of strength{known}: {most.high_text()} in section {most.name}{most.where}."
+    text += f" Beyond strength: {some(beyond)}." if beyond else ""
+    text += f" Beyond it, if the stated error is added: {some(near)}." if near else ""
+    certain = not (known or near) and all(run.searched for run in of.runs)
+    yield Sentence(text, "bad" if beyond else "good" if certain else "unsure")
 
 
-def _known(of: Reported, block: str) -> str:
-    """What is said beside the largest of a block, where some of it is open and might be larger."""
-    is_open = any(path.startswith(f"{block}.") for run in of.runs for path in run.kept.open)
-    return " that is known" if is_open else ""
+def _known(of: Reported, paths: Sequence[str]) -> str:
+    """What is said beside the largest of some numbers, where one of them is open or not known and might be larger."""
+    return " that is known" if any(lacking(of, path) for path in paths) else ""
 
 
-def _of_sections(of: Reported, quantity: str) -> list[GreatestOfCases]:
-    names = of.runs[0].results.sections
-    found = [spread_of(of, f"sections.{name}.stress.{quantity}", name) for name in names]
-    return [spread for spread in found if spread is not None]
+def _greatest(spread: GreatestOfCases) -> float:
+    return spread.high.value
 
 
 def _largest(of: Reported) -> Iterator[Sentence]:
     """The largest load of a joint, and on the foundation."""
     whole = spread_of(of, "foundation.force", "the foundation")
-    joints = [spread_of(of, f"joints.{name}.force", name) for name in of.runs[0].results.joints]
-    known = [spread for spread in joints if spread is not None and spread.high is not None]
-    if known:
-        most = max(known, key=lambda spread: spread.high.value if spread.high else 0.0)
-        yield Sentence(f"Largest joint force{_known(of, 'joints')}: {most.high_text()} in {most.name}{most.where}.")
-    if whole is not None and whole.high is not None:
-        yield Sentence(f"Largest force on the foundation{_known(of, 'foundation')}: {whole.high_text()}{whole.where}.")
+    paths = {f"joints.{name}.force": name for name in of.runs[0].results.joints}
+    joints = [spread for path, name in paths.items() if (spread := spread_of(of, path, name)) is not None]
+    if joints:
+        most, known = max(joints, key=_greatest), _known(of, list(paths))
+        yield Sentence(f"Largest joint force{known}: {most.high_text()} in {most.name}{most.where}.")
+    if whole is not None:
+        known = _known(of, ["foundation.force"])
+        yield Sentence(f"Largest force on the foundation{known}: {whole.high_text()}{whole.where}.")
 
 
 def _struck(of: Reported) -> Iterator[Sentence]:

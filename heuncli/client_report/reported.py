@@ -60,7 +60,7 @@ class Reported:
 
     spec: the scene as it stands; text: its file; digests: of the files that it names, by their names; runs: those that
     are told; outcomes: of all that is expected, in their order; given: what --set and the solver's options were; left
-    out: the cases of the spec that were not asked for.
+    out: the cases of the spec that were not asked for; unchecked: the scenes that expect something and were not solved.
     """
 
     spec: Spec
@@ -70,6 +70,7 @@ class Reported:
     outcomes: Sequence[Outcome]
     given: Sequence[str]
     left_out: Sequence[str]
+    unchecked: Sequence[str]
     reduce: bool
     units: Units
     imprint: Imprint

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from heuncli.client_report.cases_table import cases_table, timed
 from heuncli.client_report.extremes import (
@@ -10,13 +10,14 @@ from heuncli.client_report.extremes import (
     governing,
     instant_text,
     is_steady,
+    lacking,
     place_text,
     runs_in,
     style_of,
     text_of,
 )
 from heuncli.client_report.load_groups import LoadGroup, LoadNumber
-from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence
+from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured, is_claimed
@@ -29,6 +30,7 @@ from heuncli.results_schema import MAGNITUDES, RESULTANTS, STRESSES
 
 SHARE = "utilisation: the largest von Mises stress (mises) over the strength given; above 1 the section is overloaded"
 SAFE = "stresses are on the safe side where the shape of a section is not known"
+LACKING = "{}: open or not known{}, and may be larger there"
 MOST_USED = "bold: the section that is used most"
 FIRST = ("stress.utilisation", "stress.mises", "M1", "M2", "N", "Q1", "Q2", "T")  # what governs a section
 MOST_DIAGRAMS = 12
@@ -107,6 +109,12 @@ class UsedSection(NamedTuple):
     run: ReportedRun
     mises: Ends
     used: Ends | None
+    lacks: Sequence[str]
+
+    @property
+    def whole(self) -> bool:
+        """Whether its stress is known in all cases, at all instants."""
+        return not self.lacks
 
 
 def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
@@ -114,13 +122,15 @@ def _stress(of: Reported, names: list[str]) -> Iterator[Part]:
     found = [used for name in names for used in _used(of, name)]
     if not found:
         return
+    certain = all(one.whole for one in found)  # what is open may be larger
     most = max(map(_size, found))
     pa, m = of.units.of("Pa")[0], of.units.of("m")[0]
     heads = [TextColumn("section", "left"), *([TextColumn("case", "left")] if of.has_cases else [])]
     heads += [TextColumn(f"at s [{m}]"), *([TextColumn("at t [s]")] if timed(of) else [])]
     heads += [TextColumn(head) for head in (f"mises [{pa}]", f"± [{pa}]", f"strength [{pa}]", "utilisation")]
-    rows = [_cells(of, one, found, most=_size(one) == most) for one in found]
-    notes = [SHARE, SAFE, MOST_USED] if any(one.used is not None for one in found) else [SAFE]
+    rows = [_cells(of, one, found, most=certain and _size(one) == most) for one in found]
+    notes = [SHARE, SAFE, *[MOST_USED] * certain] if any(one.used is not None for one in found) else [SAFE]
+    notes += [LACKING.format(one.name, _where(of, one)) for one in found if not one.whole]
     yield ReportTable("STRESS  the largest of each section", heads, rows, notes)
 
 
@@ -138,7 +148,7 @@ def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bo
         ReportCell(place_text(end.place, of.units, named=False)),
         *([ReportCell("" if steady else instant_text(end.at, one.run))] if timed(of) else []),
         ReportCell(text_of(one.mises.high.value, how, size)),
-        ReportCell(rough(one.mises.error * size)),
+        ReportCell(rough(one.mises.error * size) if isinstance(one.mises.high.value, float) else ""),
         ReportCell(NO_STRENGTH if strength is None else f"{strength * size:.6g}"),
         ReportCell(
             "" if one.used is None else text_of(one.used.high.value, shares, 1.0), most and one.used is not None
@@ -146,11 +156,16 @@ def _cells(of: Reported, one: UsedSection, found: list[UsedSection], *, most: bo
     ]
 
 
+def _where(of: Reported, one: UsedSection) -> str:
+    return f" in case {some(one.lacks)}" if of.has_cases else " at some instants" if timed(of) else ""
+
+
 def _used(of: Reported, name: str) -> Iterator[UsedSection]:
     """Of a section the case that governs its stress."""
     path = f"sections.{name}.stress"
     shares = {run.name: ends for run, ends in runs_in(of, f"{path}.utilisation")}
-    found = [UsedSection(name, run, ends, shares.get(run.name)) for run, ends in runs_in(of, f"{path}.mises")]
+    lacks = lacking(of, f"{path}.mises")
+    found = [UsedSection(name, run, ends, shares.get(run.name), lacks) for run, ends in runs_in(of, f"{path}.mises")]
     if found:
         yield max(found, key=_size)
 

@@ -26,6 +26,10 @@ TURNED = 0.3  # rad: how far a body may turn from one frame to the next
 MOST = 600  # frames, where nobody says how many
 MOST_JUMPS = 60  # whose sides are frames: knots of tables count as jumps, too
 SAME = 1e-3  # of the way from one asked instant to the next: a summit is missed by the square of it
+MISSED = (
+    "Of the instants at which loads are largest {} found no room in this page: what is highest here is so at frames "
+    "alone; heun run tells the largest."
+)
 MOST_BYTES = 24_000_000  # of the numbers of a page, before they are text
 
 
@@ -47,9 +51,9 @@ def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
         of_horizon = ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(asked) else ()
         return PageFrames(results.time[:1], of_horizon)
     limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
-    beside = _beside(study, peaks, asked, limit - len(asked) if len(asked) < limit else limit // 3)
+    beside, missed = _beside(study, peaks, asked, max(limit - len(asked), limit // 3))
     room = limit - len(beside)
-    told = []
+    told = [MISSED.format(missed)] if missed else []
     if len(asked) > room:
         told.append(f"The run was asked for at {len(asked)} instants; {room} of them are in this page.")
         even = asked[np.linspace(0, len(asked) - 1, room).round().astype(np.intp)]
@@ -110,15 +114,20 @@ def _parts(wanted: Array, most: int) -> Indices:
     return np.asarray(1 + more.astype(np.intp))
 
 
-def _beside(study: Study, peaks: Array, asked: Array, most: int) -> Array:
-    """Instants beside those asked for, at most so many: both sides of blows, then of jumps, then peaks."""
+def _beside(study: Study, peaks: Array, asked: Array, most: int) -> tuple[Array, int]:
+    """Instants beside those asked for, at most so many: both sides of blows, then of jumps, then peaks.
+
+    Of each kind all or none; and how many peaks found no room.
+    """
     blows = [float(blow["time"]) for blow in study.results.impulses]
     jumps = study.history.jumps if len(study.history.jumps) <= MOST_JUMPS else []
     found: Array = np.zeros(0)
-    for kind in (_sides(blows, asked), _sides(jumps, asked), _apart(peaks, asked)):
+    missed = 0
+    for kind in (_sides(blows, asked), _sides(jumps, asked), summits := _apart(peaks, asked)):
         more = np.asarray(distinct(np.concatenate([found, kind])))
+        missed = len(summits) if kind is summits and len(more) > most else 0
         found = more if len(more) <= most else found
-    return found
+    return found, missed
 
 
 def _sides(instants: Sequence[float] | Array, asked: Array) -> Array:

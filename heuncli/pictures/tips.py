@@ -14,7 +14,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import Pictured, instants, varies, vectors_at
 from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
 from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.turning import LookedAt, TurningRun, angles_of, turning_of
+from heuncli.pictures.turning import TurnedVectors, TurningRun, angles_of, turning_of
 from heuncli.results import Array
 from heuncli.results_schema import SPACE
 from heuncli.study.ask.measure import stated_error
@@ -95,7 +95,7 @@ def _turning(study: Study, paths: Sequence[str]) -> TurningRun:
     """What is seen of a run."""
     candidates = [path for path in angles_of(study.spec) if path.split(".")[1] in study.results.coordinates]
     errors = [stated_error(study, study.numbers(path).keys) for path in paths]
-    looked_at = LookedAt(
+    looked_at = TurnedVectors(
         lambda t: np.stack([vectors_at(study, path, t) for path in paths], axis=1), np.nan_to_num(errors, posinf=0.0)
     )
     return turning_of(study, instants(study), candidates, looked_at)

@@ -27,7 +27,7 @@ COMPARED = 128  # angles of a cycle at which it is held against the one before
 ALMOST = 1e-6  # of a turn: a run that was to end with it
 
 
-class LookedAt(NamedTuple):
+class TurnedVectors(NamedTuple):
     """What is looked at: at some instants (n,) vectors (n, k, 3), and the errors of these (k,)."""
 
     at: Callable[[Array], Array]
@@ -73,7 +73,7 @@ def angles_of(spec: Spec) -> list[str]:
     return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
 
 
-def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors: LookedAt) -> TurningRun:
+def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors: TurnedVectors) -> TurningRun:
     """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
     whole, farthest = TurningRun(times, "", np.zeros(0), 0), LEAST
     for path in candidates:
@@ -97,7 +97,7 @@ def span(angles: Array) -> float:
     return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
 
 
-def comes_back(study: Study, whole: TurningRun, turns: int, vectors: LookedAt) -> bool:
+def comes_back(study: Study, whole: TurningRun, turns: int, vectors: TurnedVectors) -> bool:
     """Whether the last so many turns are as those before them."""
     angle = whole.way * TURN * turns
     if span(whole.angles) < 2.0 * abs(angle) - ALMOST * TURN:

@@ -19,6 +19,8 @@ OUTSIDE = """[...document.querySelectorAll("button, input, select, canvas")].fil
 }).map(e => e.id)"""
 TOO_WIDE = """[...document.querySelectorAll("#numbers td, #numbers th")]
   .filter(e => e.scrollWidth > e.clientWidth && !e.querySelector(".hidden")).map(e => e.textContent)"""
+LONGEST = """document.querySelectorAll("#numbers td[data-path], #numbers td.unit").forEach(
+  e => { e.textContent = e.className ? "kN\\u00b7mm\\u00b7s" : "\\u22121.23456e\\u221212"; })"""
 KEEP_FRAMES = f"""(window.seen = [],
   new MutationObserver(() => seen.push({FRAME})).observe(document.documentElement, {{attributes: true}}))"""
 OPERATED = {"button", "checkbox", "combobox", "slider", "application", "DisclosureTriangle", "region"}
@@ -160,11 +162,13 @@ def test_there_is_something_to_be_seen(dark: bool, browser: Chromium, page: Page
 
 @pytest.mark.parametrize("name", ["double", "engine", "crane", "swing"])
 def test_no_number_reaches_into_the_next(name: str, browser: Chromium, page: Pages) -> None:
-    for width in (1000, 1200):
+    for width in (360, 1000, 1200):
         with browser.open(page(SPECS / f"{name}.yaml"), width=width, height=900) as tab:
             for key in ("Home", "End"):
                 tab.press(key)
                 assert tab.evaluate(TOO_WIDE) == []
+            tab.evaluate(LONGEST)
+            assert tab.evaluate(TOO_WIDE) == []
 
 
 def test_a_phone_shows_all_of_it_without_scrolling_sideways(browser: Chromium, page: Pages) -> None:

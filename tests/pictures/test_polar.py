@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.shared.command import Heun
+from tests.shared.folders import ROOT
 from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -97,6 +98,15 @@ def test_a_small_vector_beside_a_large_one_has_to_come_back_too(heun: Heun, fold
     (folder / "growing.yaml").write_text(CRANK.replace("LAW", '"2*pi*t"') + growing)
     _, words = drawn(heun, "growing.yaml", "polar", "joints.main", "joints.main.moment")
     assert "the whole run, t = 0 to 3 s" in words
+
+
+def test_rounding_is_a_point(heun: Heun) -> None:
+    """Of what is less than its error the axes reach as far as that."""
+    (panel,), words = drawn(heun, str(ROOT / "specs" / "cardan.yaml"), "polar", "foundation", "--view", "x")
+    (curve,) = panel.lines("foundation.force")
+    assert "foundation.force: ? N all along" in words
+    assert np.hypot(*curve.T).max() < 0.5 * panel.pixel * (panel.right - panel.left)
+    assert panel.x.values(np.array([panel.left]))[0] < 0.0 < panel.x.values(np.array([panel.right]))[0]
 
 
 def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:

@@ -137,7 +137,7 @@ def test_expectations_of_the_scene_without_its_cases_are_checked(heun: Heun, fol
     verdicts = {row[1]: row[-1] for row in PageReader(done.stdout).rows if row[-1] in ("holds", "FAILS")}
     assert verdicts == {"as it stands": "holds", "heavy": "FAILS"}
     alone = heun("report", "cased.yaml", "-o", "-", "--case", "heavy")
-    assert "as it stands" not in alone.stdout
+    assert not any("as it stands" in row for row in PageReader(alone.stdout).rows)
 
 
 def test_units_and_settings_are_told(heun: Heun) -> None:

@@ -113,3 +113,11 @@ def test_units_are_those_asked_for_and_numbers_stay_si(heun: Heun, folder: Path)
 def test_what_is_set_is_solved(heun: Heun, folder: Path) -> None:
     one, two = (written(heun, folder, "hanging.yaml", "--set", f"m={m}")["blocks"] for m in (1, 2))
     assert one != two and "9.81" in str(one) and "19.62" in str(two)
+
+
+def test_largest_loads_without_room_are_told(heun: Heun, folder: Path) -> None:
+    spec = str(SPECS / "engine.yaml")
+    for frames, told in (("8", True), ("60", False)):
+        assert heun("show", spec, "-o", "page.html", "--frames", frames, "-q").returncode == 0
+        said = data_of((folder / "page.html").read_text())["told"]
+        assert any("found no room in this page" in text for text in said) == told, said

@@ -8,7 +8,7 @@ from heuncli.cli import alarm, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import overrides, solver_options, warn
 from heuncli.cli.units import units
-from heuncli.client_report.reported import LOADS, Imprint, Reported, ReportedRun
+from heuncli.client_report.reported import AS_IT_STANDS, LOADS, Imprint, Reported, ReportedRun
 from heuncli.commands.reporting.request import ReportRequest
 from heuncli.errors import HeunError, Problem
 from heuncli.nearest import did_you_mean
@@ -72,8 +72,10 @@ def reported(request: ReportRequest) -> Reported:
         warn(one, study.results, request.quiet, f"heun: case {name}" if name else "heun", study.later_warnings)
     imprint = Imprint(request.date or "", request.author or "", request.project or "")
     left_out = [name for name in cases if name not in told]
+    unchecked = [AS_IT_STANDS] if request.case is not None and spec.expect else []
+    unchecked += [name for name in left_out if cases[name].expect]
     return Reported(
-        spec, text, files.digests, runs, outcomes, list(_given(request)), left_out,
+        spec, text, files.digests, runs, outcomes, list(_given(request)), left_out, unchecked,
         not request.no_reduce, shown, imprint,
     )  # fmt: skip
 

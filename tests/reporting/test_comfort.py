@@ -1,0 +1,127 @@
+"""A report gives no comfort that another case, a stated error or a check that was not made takes away."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from tests.shared.command import Heun
+from tests.shared.page_reader import PageReader
+
+BEAM = """\
+heun: 1
+title: A beam on three supports, of which the middle one slides along the beam or across it
+space: planar
+parameters: {along: 0, P: 1 kN, strength: 235 MPa}
+ground: {points: {A: [0, 0], B: [1, 0], C: [2, 0]}}
+bodies:
+  beam:
+    shapes: [{type: box, center: [1, 0, 0], size: [2, 0.04, 0.02], mass: 10}]
+    points: {A: [0, 0], B: [1, 0], C: [2, 0], m: [1.5, 0]}
+joints:
+  A: {type: pin, from: ground.A, to: beam.A}
+  B: {type: line, from: ground.B, to: beam.B, axis: [cos(along), sin(along)]}
+  C: {type: line, from: ground.C, to: beam.C, axis: [1, 0]}
+forces: {load: {type: force, on: beam.m, vector: [0, -P]}}
+sections:
+  mid: {body: beam, at: [1.4, 0], normal: [1, 0], properties: {rectangle: {width: 20 mm, height: 40 mm}},
+    strength: strength}
+cases: {firm: {set: {along: 90 deg}}, CASES}
+"""
+GUIDED = """\
+heun: 1
+title: A block that is driven along its guide and pushed across it
+ground: {points: {O: [0, 0, 0]}}
+bodies: {block: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {c: [0, 0, 0]}}}
+joints: {guide: {type: slide, from: ground.O, to: block.c, axis: [1, 0, 0]}}
+drives: {along: {joint: guide, travel: t**2/2}}
+forces: {push: {type: force, on: block.c, vector: [0, 3, 4]}}
+"""
+SWING = """\
+heun: 1
+title: A bar swings
+gravity: [0, 0, -9.81]
+parameters: {strength: 100 kPa}
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  bar: {shapes: [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 1}], points: {top: [0, 0, 0]}}
+joints: {pivot: {type: pin, from: ground.O, to: bar.top, axis: [0, 1, 0]}}
+sections:
+  mid: {body: bar, at: [0.5, 0, 0], normal: [1, 0, 0], properties: {rectangle: {width: 20 mm, height: 20 mm}},
+    strength: strength}
+analysis: {duration: 1, samples: 21}
+"""
+
+
+def read_of(heun: Heun, folder: Path, text: str, *words: str) -> PageReader:
+    (folder / "own.yaml").write_text(text)
+    done = heun("report", "own.yaml", "-o", "-", *words)
+    assert done.returncode == 0, done.stderr
+    return PageReader(done.stdout)
+
+
+def test_stress_that_another_case_leaves_open_is_not_told_as_the_largest(heun: Heun, folder: Path) -> None:
+    read = read_of(heun, folder, BEAM.replace("CASES", "loose: {set: {P: 3 kN}}"))
+    first = read.by_tag["header"][0]
+    assert "Largest utilisation of strength that is known: 0.558511" in first
+    assert "Largest force on the foundation: 3000.00 N" in first  # which is not open
+    head = next(k for k, row in enumerate(read.rows) if row[:1] == ["section"])
+    assert read.rows[head + 1][:2] == ["mid", "firm"]
+    assert (head + 1, len(read.rows[head]) - 1) not in read.bold
+    assert "mid: open or not known in case loose, and may be larger there" in read.by_tag["li"]
+    assert all(row[-1] == "" for row in read.rows if row[-2:-1] == ["open"])  # an error of nothing
+
+
+def test_of_many_cases_those_left_out_that_leave_a_number_open_are_named(heun: Heun, folder: Path) -> None:
+    firm = ", ".join(f"f{k}: {{set: {{along: 90 deg, P: {k} kN}}}}" for k in range(2, 14))
+    read = read_of(heun, folder, BEAM.replace("CASES", f"{firm}, loose: {{set: {{P: 99 kN}}}}"))
+    assert any("larger, stand in the cases left out here: loose" in text for text in read.by_tag["li"])
+
+
+def test_strength_within_the_stated_error_is_no_comfort(heun: Heun, folder: Path) -> None:
+    """A bar swings, integrated coarsely; its strength lies within what the run may err, then beyond that."""
+    coarse = ("--tolerance", "1e-4")
+    first = read_of(heun, folder, SWING, *coarse).by_tag["header"][0]
+    found = re.search(r"Largest utilisation of strength: \S+ \(± (\S+)\)", first)
+    assert found is not None and "is added" not in first
+    asked = ("--measure", "max sections.mid.stress.utilisation")
+    largest = json.loads(heun("run", "own.yaml", *coarse, *asked, "--format", "json").stdout)["value"]
+    error = float(found[1])
+    for share, told in ((0.3, True), (3.0, False)):
+        strength = f"strength={100 * (largest + share * error)!r} kPa"
+        own = read_of(heun, folder, SWING, *coarse, "--set", strength).by_tag["header"][0]
+        assert ("Beyond it, if the stated error is added: mid." in own) == told, own
+
+
+def test_extremes_of_samples_alone_are_told_first(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    said = "extremes are those of 21 instants alone"
+    assert said not in read_of(heun, folder, SWING).by_tag["header"][0]
+    monkeypatch.setattr("heuncli.telling.keep.MOST_SEARCHED", 0)
+    assert said in read_of(heun, folder, SWING).by_tag["header"][0]
+
+
+def test_checks_of_other_cases_are_not_taken_for_none(heun: Heun, folder: Path) -> None:
+    text = BEAM.replace("CASES", "loose: {set: {P: 3 kN}}")
+    text += "expect: [{of: foundation.force.y, case: firm, below: 0}]\n"
+    read = read_of(heun, folder, text, "--case", "loose")
+    assert "No result was checked. Not checked, as it was not asked for: firm." in read.by_tag["header"][0]
+    assert "The spec expects nothing of what is reported." in read.by_tag["p"]
+
+
+@pytest.mark.parametrize("case", ["loose", "firm,loose"])
+def test_checks_that_were_not_asked_for_are_told(heun: Heun, folder: Path, case: str) -> None:
+    text = BEAM.replace("CASES", "loose: {set: {P: 3 kN}}") + "expect: [{of: foundation.force.y, below: 0}]\n"
+    first = read_of(heun, folder, text, "--case", case).by_tag["header"][0]
+    left = "as it stands, firm." if case == "loose" else "as it stands."
+    assert f"hold{'s' * (case == 'loose')}. Not checked, as it was not asked for: {left}" in first
+    assert "Not checked" not in read_of(heun, folder, text).by_tag["header"][0]
+
+
+def test_the_one_scalar_beside_a_force_hides_no_other(heun: Heun, folder: Path) -> None:
+    """A guide with a drive carries 5 N across its axis."""
+    read = read_of(heun, folder, GUIDED)
+    assert ["radial", "N", "5.00000"] in [row[:3] for row in read.rows]
+    assert ["drive", "N", "1.00000"] in [row[:3] for row in read.rows]
