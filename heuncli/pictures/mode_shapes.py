@@ -59,7 +59,7 @@ def mode_shapes(found: MovedBodies, machine: Machine, view: SceneView) -> Figure
     resting = np.concatenate([line.points for line in lines])
     extent = float(np.ptp(view.flat(resting), axis=0).max()) or 1.0
     middle = resting.mean(axis=0)
-    supports = [place for place in _supports(found, machine) if np.linalg.norm(place - middle) <= FAR * extent]
+    supports = [place for place in _supports(machine) if np.linalg.norm(place - middle) <= FAR * extent]
     drawn = [_drawn(found, k, mode, lines, extent) for k, mode in enumerate(modes[:MOST])]
     every = np.concatenate([view.flat(np.concatenate(way)) for mode in drawn for way in (mode.one, mode.other)])
     every = np.concatenate([every, *(view.flat(place)[None] for place in supports)])
