@@ -13,6 +13,7 @@ from heuncli.pictures.courses import NumberCourse, Pictured, jumps_of
 from heuncli.results import Array, Results
 
 OFTEN = 5  # times
+INSTANT_DIGITS = 6  # as tables show at most
 
 
 def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tuple[list[Upright], list[str]]:
@@ -62,7 +63,7 @@ def told(words: str, at: float) -> str:
 
 def instant(at: float) -> str:
     """An instant in words."""
-    return f"{short(at, 4)} s"
+    return f"{short(at, INSTANT_DIGITS)} s"
 
 
 def _near(known: Array, at: float) -> bool:

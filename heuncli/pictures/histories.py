@@ -232,7 +232,7 @@ def _extremes(drawn: PanelCourse, size: float, across: Across) -> Iterator[Spot]
         if is_varying:
             text = f"{figures(peak.value, error, size)} at {at}"
         else:
-            text = figures(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
+            text = steady(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
             x = across.size * float(drawn.x[np.argmax(np.isfinite(drawn.x + drawn.course.values))])
         if not math.isfinite(x):  # what it is drawn over is open there
             continue
@@ -248,10 +248,17 @@ def _place(drawn: PanelCourse, peak: Peak, across: Across) -> tuple[float, str]:
     return x, f"{short(x, 4)} {'' if across.unit == '1' else across.unit}".rstrip()
 
 
+def steady(value: float, error: float, size: float) -> str:
+    """A number that does not vary; of one below its error, which may be of either sign, that error; ?: not known."""
+    if 0.0 < abs(value) <= error:
+        return "?" if math.isinf(error) else f"not above its stated error, {rough(size * error)},"
+    return figures(value, error, size)
+
+
 def figures(value: float, error: float, size: float) -> str:
     """A number in its unit as it is shown, to no more digits than its error leaves."""
     if value == 0.0 or abs(value) <= error:
-        return "0"
+        return "?" if math.isinf(error) else "0"
     known = DIGITS
     if error > 0.0:
         known = min(DIGITS, math.floor(math.log10(abs(value))) - math.floor(math.log10(error)))

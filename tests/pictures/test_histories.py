@@ -109,7 +109,7 @@ def test_blows_and_events_stand_where_they_happen(heun: Heun, folder: Path) -> N
     (panel,) = drawn(heun, folder, spec("drill"), "bodies.drill.position.z")
     for name, event in found["events"].items():
         for at in event["time"]:
-            (mark,) = panel.curves[f"{name} at {float(f'{at:.4g}'):.6g} s"]
+            (mark,) = panel.curves[f"{name} at {at:.6g} s"]
             assert mark[:, 0] == pytest.approx(at, abs=panel.across)
     blows = [blow["time"] for blow in results(heun, spec("bouncing_ball"))["impulses"]]
     ball = drawn(heun, folder, spec("bouncing_ball"), "bodies.ball.velocity.z", "bodies.ball.center.z")[0]

@@ -51,7 +51,7 @@ def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Sp
         for case, spec in cases.items():
             yield f"{name} {case}".lstrip(), spec
     else:
-        for case in request.case.split(","):
+        for case in map(str.strip, request.case.split(",")):
             yield f"{name} {case}".lstrip(), load(file, overrides=given, checking=False, case=case)
     require_other_file(request.output, [file])
 
