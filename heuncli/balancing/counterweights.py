@@ -125,11 +125,11 @@ def own_axis(cycle: Cycle, at: WeightPlace) -> Array:
 
 def on_axis(cycle: Cycle, at: WeightPlace, axis: Array) -> Array:
     """The place that a weight is counted from: of a body with a fixed axis the point of the axis level with it."""
-    found = fixed_point(cycle, at.body, axis)
+    found = fixed_point(cycle, at.body)
     return at.place if found is None else found + (axis @ (at.place - found)) * axis
 
 
-def fixed_point(cycle: Cycle, body: int, axis: Array) -> Array | None:
+def fixed_point(cycle: Cycle, body: int) -> Array | None:
     """A point of the body, its axes (3,), that stays where it is; None where none does."""
     states = cycle.states
     R, w = states.R[:, body], states.omega[:, body]

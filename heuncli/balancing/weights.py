@@ -40,7 +40,7 @@ def counterbalanced(
     rows = all_rows(effects, turns, rounding_of(effects, turns.scale))
     before, after = cost(spec, scene, heavier, plan, about, len(cycle.angles))
     return Counterbalance(
-        weights=tuple(told(scene.mechanism, weight) for weight in found.weights),
+        weights=tuple(told(weight) for weight in found.weights),
         minimised=what, lever=lever if what == "mix" else None, several=found.several,
         orders=rows, words={name: in_words(own) for name, own in rows.items()}, before=before, after=after,
     )  # fmt: skip
@@ -61,7 +61,7 @@ def place_of(mechanism: Mechanism, weight: AskedWeight) -> WeightPlace:
     return WeightPlace(k, f"{weight.body}.{weight.point}", np.array(points[weight.point]), weight.radius)
 
 
-def told(mechanism: Mechanism, weight: Weight) -> PlacedWeight:
+def told(weight: Weight) -> PlacedWeight:
     """A weight by its names."""
     body, _, place = weight.at.name.partition(".")
     product = math.sqrt(float(weight.product @ weight.product))
