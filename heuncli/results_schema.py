@@ -129,6 +129,7 @@ DIRECT = (
 # The loads of a section: along n, e1 and e2, and about them. The stresses they make.
 SECTION_FORCES, SECTION_MOMENTS = ("N", "Q1", "Q2"), ("T", "M1", "M2")
 RESULTANTS = SECTION_FORCES + SECTION_MOMENTS
+RESULTANT_UNITS = dict.fromkeys(SECTION_FORCES, "N") | dict.fromkeys(SECTION_MOMENTS, "N·m")
 STRESSES = ("normal_max", "normal_min", "shear_torsion", "shear_mean", "shear_max", "mises", "utilisation")
 # The loads of a joint that are one number: along its axis, across it, about axes across it; of a rod.
 AXIAL_FORCES, TILTING_MOMENTS = ("axial", "radial", "tension"), ("tilting",)

@@ -188,6 +188,13 @@ RADAU5 = 3e-6  # local tolerance above which three stages take less than five, w
 GIMBAL = 1e-3  # rad from a lock of Euler angles: the condition of their matrix is 2e3, three digits are lost
 FASTER_THAN_TIME = 4.0  # over the second half of a run: what grows with the square of the time grows fourfold
 
+# -- pictures
+THROUGHOUT = 1e-9  # of its size: what varies by less is told once; typed with ten digits it would not vary
+IN_ONE_PLANE = 1e-9  # of the largest vector of a run: components across a plane that turned axes and steps leave
+TOLD_ACROSS = 1e-6  # of the largest vector in the plane: what else stands across it is told: six digits, a table's
+COMES_ROUND = 2e-3  # of the largest vector: a pixel of a picture; turns that differ by less are drawn as one
+NOTHING_ACTS = 100.0 * EPS  # of what forces are summed from: rounding of the sum, which has no direction to be drawn
+
 # -- rest
 REST_FIRST = 0.01  # rad, or of the size: the first step, short against any lever
 REST_DOUBT = 0.05  # rad, or of the size: what is off by as much, grown, may be on the other side of a ridge

@@ -7,7 +7,7 @@ from typing import Any
 
 from heuncli.client_report.parts import Drawing, Facts, Listing, Part, Sentence
 from heuncli.client_report.reported import Reported
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.courses import Pictured, is_claimed
 from heuncli.pictures.scenes import scene
 from heuncli.report.model_text import LISTS, facts
 from heuncli.study.workflow import describe
@@ -22,6 +22,8 @@ BESIDE = ("names", "notes")  # of a model, what runs do without
 def drawing_parts(of: Reported) -> list[Part]:
     """The machine at its first instant, of the first case."""
     run = of.runs[0]
+    if not is_claimed(run.study):
+        return [Sentence("Nothing is claimed of where it is at the instants of the run: all are beyond its horizon.")]
     case = f", load case {run.name}" if run.name else ""
     figure = scene(Pictured("", run.study), of.units)._replace(title="")
     return [Drawing(figure, f"The machine at the start{case}")]

@@ -20,7 +20,7 @@ from heuncli.client_report.load_groups import LoadGroup, LoadNumber
 from heuncli.client_report.parts import Drawing, Part, ReportCell, ReportTable, Sentence, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.courses import Pictured, is_claimed
 from heuncli.pictures.diagrams import diagrams
 from heuncli.report.digits import rough
 from heuncli.report.table_blocks import FAMILIES
@@ -50,6 +50,9 @@ def _diagrams(of: Reported, names: list[str]) -> Iterator[Part]:
     most = sorted(runs, key=lambda name: governs[name].size, reverse=True)[:MOST_DIAGRAMS]
     for name in (name for name in runs if name in most):
         run = governs[name].run
+        if not is_claimed(run.study):
+            yield Sentence(f"{name} has no diagram: all instants of the run are beyond its horizon.")
+            continue
         figure = diagrams([Pictured("", run.study)], [name], of.units)._replace(title="")
         case = f", load case {run.name}" if run.name else ""
         yield Drawing(figure, f"Section {name}{case}: the piece beyond the cut ON the part before it; N > 0 tension")

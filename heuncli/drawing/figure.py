@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
+HEIGHT = 170.0  # pixels of a panel, as a rule
+
 
 class Trace(NamedTuple):
     """A line through points (n,), broken where one is nan; thin: what stands beside a curve that matters more."""
@@ -157,10 +159,7 @@ class Bars(NamedTuple):
 
 
 class Cells(NamedTuple):
-    """A field: values (n_y, n_x) in cells with edges (n_x + 1,) and (n_y + 1,); nan is left empty, what is the unit.
-
-    level: of lines of the same value, at which values they are drawn.
-    """
+    """A field: values (n_y, n_x) in cells with edges (n_x + 1,) and (n_y + 1,), shaded by value; nan is empty."""
 
     name: str
     x_edges: Array
@@ -214,7 +213,7 @@ class Panel(NamedTuple):
     x: Scaling
     y: Scaling
     items: tuple[Item, ...]
-    height: float = 170.0
+    height: float = HEIGHT
     equal: bool = False
     bare: bool = False
     title: str = ""

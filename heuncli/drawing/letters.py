@@ -12,14 +12,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.drawing.canvas import NOBODY, RESET, Canvas, Look
-from heuncli.drawing.figure import (
-    Figure,
-    Item,
-    Panel,
-    PlaceLabel,
-    Trace,
-    Upright,
-)
+from heuncli.drawing.figure import HEIGHT, Figure, Item, Panel, PlaceLabel, Trace, Upright
 from heuncli.drawing.letter_items import DRAWN, mark_of
 from heuncli.drawing.pens import pen
 from heuncli.drawing.room import columns_of, left_out
@@ -28,8 +21,7 @@ from heuncli.drawing.words import in_turn
 from heuncli.foreign_text import shown
 from heuncli.wrapping import wrapped
 
-ROWS, LEAST_ROWS = 12, 5  # of a panel of 170 pixels
-PIXELS = 170.0
+ROWS, LEAST_ROWS = 12, 5  # of a panel as high as most, and of any
 ASPECT = 2.0  # how much higher than wide a cell is
 LABEL = 10  # columns left of a panel
 LETTERS = 3  # of its pen along a curve
@@ -68,7 +60,7 @@ def _legend(figure: Figure, look: Look) -> list[str]:
 def _panel(panel: Panel, look: Look) -> tuple[list[str], list[str]]:
     """A panel with its axes, and what is told of words that found no room."""
     room = max(look.width - LABEL - 2, 10)
-    rows = max(LEAST_ROWS, round(ROWS * panel.height / PIXELS))
+    rows = max(LEAST_ROWS, round(ROWS * panel.height / HEIGHT))
     columns = room
     if panel.equal:
         across, up = panel.x.high - panel.x.low, panel.y.high - panel.y.low

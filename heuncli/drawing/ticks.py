@@ -66,10 +66,15 @@ def written(value: float, places: int) -> str:
     return f"{mantissa.rstrip('0').rstrip('.') if '.' in mantissa else mantissa}e{int(exponent)}"
 
 
-def short(value: float) -> str:
-    """A number to six digits, its exponent short: 1e7, 2.5e-6."""
-    mantissa, e, exponent = f"{value:.6g}".partition("e")
+def short(value: float, digits: int = 6) -> str:
+    """A number to six digits, or to fewer, its exponent short: 1e7, 2.5e-6; whole ones below a million without one."""
+    mantissa, e, exponent = f"{float(f'{value:.{digits}g}'):.6g}".partition("e")
     return mantissa + (f"e{int(exponent)}" if e else "")
+
+
+def near_zero(low: float, high: float) -> bool:
+    """Whether zero belongs on an axis: it is in reach of what is drawn, beside how far that goes."""
+    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
 def ends(low: float, high: float, *, zero: bool = False, spare: float = SPARE) -> tuple[float, float]:

@@ -48,7 +48,8 @@ def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
     horizon = results.accuracy.get("horizon")
     asked = results.time if horizon is None else results.time[results.time < horizon]
     if len(asked) < 2:
-        return PageFrames(results.time[:1], ("Nothing is claimed of this motion beyond its start.",))
+        of_horizon = ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(asked) else ()
+        return PageFrames(results.time[:1], of_horizon)
     limit = max(2, min(most, MOST_BYTES // _bytes_of_a_frame(study)))
     beside, missed = _beside(study, peaks, asked, max(limit - len(asked), limit // 3))
     room = limit - len(beside)

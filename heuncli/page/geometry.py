@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.page.packing import drawn
 from heuncli.results import Array, Results
 from heuncli.scenery.machine import GROUND, BodyLook, Machine, machine_of
@@ -14,7 +15,6 @@ from heuncli.scenery.poses import Poses
 from heuncli.scenery.solids import ROUND, Surface
 from heuncli.spec.models import Shape, Spec
 
-PARALLEL = 1e-6
 FINE, FEW = 48, 8  # faces about an axis where there are no more bodies
 REACH_FRAMES = 60  # frames by which the reach of a motion is told
 
@@ -121,6 +121,6 @@ def _normal(machine: Machine, poses: Poses) -> list[float] | None:
         if joint.kind == "pin":
             axis = joint.axis / np.linalg.norm(joint.axis)
             axes.append(axis if joint.a == GROUND else poses.attitudes[joint.a][0] @ axis)
-    if not axes or any(np.linalg.norm(np.cross(axes[0], axis)) > PARALLEL for axis in axes[1:]):
+    if not axes or any(np.linalg.norm(np.cross(axes[0], axis)) > tolerances.PARALLEL for axis in axes[1:]):
         return None
     return _triple(axes[0])

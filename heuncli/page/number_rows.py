@@ -19,7 +19,7 @@ from heuncli.report.series import Series, in_units, walk, walk_impulse
 from heuncli.report.table_blocks import FAMILIES, POSITIONS, NumberRow, family_styles, rows_of
 from heuncli.report.table_plans import AXIS, IMPULSES, PLANS, TablePlan
 from heuncli.results import Array, Block, Results
-from heuncli.results_schema import RESULTANTS, STRESSES
+from heuncli.results_schema import RESULTANT_UNITS, RESULTANTS, STRESSES
 
 ZEROS = "0 throughout: "
 LEFT_OUT = frozenset({"bodies", "points", "sections"})  # sections have rows of their own
@@ -150,7 +150,7 @@ def _kind(quantity: str, labels: Labels) -> tuple[str, float]:
     """The unit in which a load or stress of a section is shown, and how many of it are one in SI."""
     if quantity in STRESSES:
         return labels.units.of("1" if quantity == "utilisation" else "Pa")
-    return labels.units.of("N" if quantity in RESULTANTS[:3] else "N·m")
+    return labels.units.of(RESULTANT_UNITS[quantity])
 
 
 def _values(section: Mapping[str, Any]) -> Iterator[tuple[str, Array]]:

@@ -11,7 +11,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import Certainty
 from heuncli.report.labels import Labels
 from heuncli.results import Array, Results
-from heuncli.results_schema import RESULTANTS, SECTION_FORCES
+from heuncli.results_schema import RESULTANT_UNITS, RESULTANTS
 from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch, distinct
 
@@ -67,8 +67,9 @@ def _loads(results: Results) -> Iterator[LoadColumn]:
                 yield LoadColumn(np.einsum("ij,ij->i", block[quantity], block[quantity]), kind, unit, square=True)
     for name, section in results.sections.items():
         for quantity in RESULTANTS:
-            unit = "N" if quantity in SECTION_FORCES else "N·m"
-            yield LoadColumn(section[quantity], "sections", unit, run=name if "s" in section else "")
+            yield LoadColumn(
+                section[quantity], "sections", RESULTANT_UNITS[quantity], run=name if "s" in section else ""
+            )
 
 
 def _columns(results: Results) -> Array:

@@ -24,7 +24,7 @@ from heuncli.records import record, replace
 from heuncli.report.digits import Certainty, certainty
 from heuncli.report.labels import labels_of
 from heuncli.results import Array, Block, Mask, Results
-from heuncli.results_schema import RESULTANTS
+from heuncli.results_schema import AT_A_BLOW, RESULTANT_UNITS, RESULTANTS
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
@@ -36,8 +36,6 @@ SECTIONS = frozenset({"sections"})
 ALONG, LEAST = 240, 8  # places along a bar, three pixels apart; and between two corners at least
 HALVINGS, MOST = 4, 16_000  # of the steps between instants, and how many of these at most
 SAME = 1e-6  # of the larger of two magnitudes: what is as large as the other in a picture
-UNITS = {"N": "N", "Q1": "N", "Q2": "N", "T": "N·m", "M1": "N·m", "M2": "N·m"}
-OF_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}
 
 
 class Extreme(NamedTuple):
@@ -172,8 +170,8 @@ class WholeBar:
 
     def unit(self, quantity: str) -> str:
         """The SI unit of a quantity."""
-        own = UNITS[quantity]
-        return OF_A_BLOW[own] if self.struck else own
+        own = RESULTANT_UNITS[quantity]
+        return AT_A_BLOW[own] if self.struck else own
 
     def error(self, quantity: str) -> float:
         """The stated error of a quantity, in SI; not below what the sums that it is of lose by rounding."""

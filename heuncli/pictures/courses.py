@@ -6,9 +6,13 @@ extremes looks, both sides of every jump, and where these are few more between t
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
+from heuncli.pictures.refusals import NotDrawable
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.study.ask import curves
@@ -17,6 +21,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import distinct, sides_of_jumps
 from heuncli.variants.stated import error_of, unit_of
 
+CASE = " (case "  # behind a title
 ENOUGH = 400  # instants of a curve: two a pixel of a panel, nearly
 JUMP = 0.01  # of the span of a course: a jump that is drawn as one
 MOST = 4000  # of the instants at which extremes are looked for, as many as a picture can show
@@ -28,6 +33,14 @@ class Pictured:
 
     name: str
     study: Study
+
+
+def title_of(sources: Sequence[Pictured]) -> str:
+    """What one or several runs are of; their cases stand in the legend."""
+    titles = [source.study.results.title for source in sources]
+    if len(titles) == 1:
+        return titles[0]
+    return " · ".join(dict.fromkeys(title.rpartition(CASE)[0] or title for title in titles))
 
 
 class NumberCourse(NamedTuple):
@@ -42,8 +55,26 @@ class NumberCourse(NamedTuple):
     high: Peak
 
 
+def is_claimed(study: Study) -> bool:
+    """Whether anything is claimed of a run at any of its instants: whether its horizon is behind the first."""
+    horizon = study.results.accuracy.get("horizon")
+    return study.of_one_instant or horizon is None or bool(study.results.time[0] < horizon)
+
+
+def require_claimed(study: Study) -> None:
+    """Raise NotDrawable for a run whose instants are all beyond its horizon."""
+    if not is_claimed(study):
+        horizon, first = study.results.accuracy["horizon"], study.results.time[0]
+        message = f"from t = {horizon:.6g} s on nothing is claimed, and the first instant is t = {first:.6g} s"
+        raise NotDrawable(message, "earlier instants, or a smaller --tolerance")
+
+
 def instants(study: Study, most: int = MOST) -> Array:
-    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for."""
+    """The instants of curves, (n,) ascending, up to the horizon; most: of those at which extremes are looked for.
+
+    Raises NotDrawable where the horizon is before all of them.
+    """
+    require_claimed(study)
     results = study.results
     times = results.time
     if study.of_one_instant:
@@ -57,6 +88,11 @@ def instants(study: Study, most: int = MOST) -> Array:
     found = distinct(np.concatenate([times, looked_at, even]))
     horizon = results.accuracy.get("horizon")
     return np.asarray(found if horizon is None else found[found < horizon])
+
+
+def varies(low: float, high: float, error: float) -> bool:
+    """Whether a number that is known to an error varies between a lowest and a highest value, both of it."""
+    return high - low > max(tolerances.THROUGHOUT * max(abs(low), abs(high)), 2.0 * error)
 
 
 def jumps_of(course: NumberCourse) -> Array:

@@ -11,6 +11,8 @@ from heuncli.drawing.figure import Band, Blank, Item, Panel, Scaling, Spot, Stro
 from heuncli.drawing.ticks import ends, short, ticks
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.bars import AlongBar, Extreme, Reach, WholeBar
+from heuncli.pictures.error_bands import is_seen
+from heuncli.pictures.happenings import instant
 from heuncli.report.digits import OPEN, style, write
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Mask
@@ -19,7 +21,7 @@ HIGH, LOW = 150.0, 56.0  # pixels of a panel, and of one in which all is open
 ORDINATES = 60  # of a hatch along a bar
 FREE = 0.011  # of a bar's length: how far from a sign ordinates are
 WIDE, HIGH_ENOUGH = 0.05, 0.15  # of a bar's length, of the largest value: what is less has no sign written in it
-VISIBLE = 0.004  # of a panel's height: half a pixel, below which the band of an error is not seen
+MARKED = 0.004  # of the largest magnitude of a quantity: half a pixel, below which an extreme is not marked
 TICKS = 4  # of an axis that is turned over
 SPARE = 0.22  # of a panel's height, beyond what is drawn: room for the words at extremes
 UNKNOWN = "not known: the stated error is as large as the numbers"
@@ -107,7 +109,7 @@ def _of_one(drawn: DrawnBar, quantity: str, to: Scales, y: Scaling, *, alone: bo
         both = np.sort(up * np.stack([reach.low, reach.high]), axis=0)
         yield Band(f"{whose}lowest and highest of {quantity}", to.s * reach.s, both[0], both[1], drawn.pen)
     values, error = up * line.values, to.value * drawn.bar.error(quantity)
-    if error > VISIBLE * (y.high - y.low):
+    if is_seen(error, y, HIGH):
         both = np.clip([values - error, values + error], y.low, y.high)
         yield Band(f"{whose}stated error of {quantity}", to.s * line.s, both[0], both[1], drawn.pen)
     if alone:
@@ -172,13 +174,13 @@ def _extremes(drawn: DrawnBar, quantity: str, to: Scales) -> Iterator[Spot]:
     reach = drawn.reaches.get(quantity)
     steady = high.value - low.value <= error
     for one in (high,) if steady else (high, low):
-        if not abs(one.value) > max(error, VISIBLE * drawn.size(quantity)):
+        if not abs(one.value) > max(error, MARKED * drawn.size(quantity)):
             continue
         (value,) = write([to.value * one.value], how)
         line = drawn.lines[quantity] if reach is None else reach.at_lowest if one is low else reach.at_highest
         s = first_place(one, line, error)
-        where = [] if steady else [f"s = {short(float(f'{to.s * s:.4g}'))} {to.units[0]}"]
-        when = [f"t = {short(float(f'{one.at:.4g}'))} s"] if reach is not None and varies_at(s, reach, error) else []
+        where = [] if steady else [f"s = {short(to.s * s, 4)} {to.units[0]}"]
+        when = [f"t = {instant(one.at)}"] if reach is not None and varies_at(s, reach, error) else []
         text = f"{value} at {', '.join([*where, *when])}" if where or when else value
         yield Spot(to.s * s, to.up * to.value * one.value, text, drawn.pen, filled=True)
 

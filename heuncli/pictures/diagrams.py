@@ -20,17 +20,18 @@ import numpy as np
 
 from heuncli.drawing.figure import Blank, Figure, Panel, Scaling, Upright
 from heuncli.drawing.ticks import ends, short
-from heuncli.pictures.bars import UNITS, WholeBar
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.bars import WholeBar
+from heuncli.pictures.courses import Pictured, title_of
 from heuncli.pictures.diagram_panels import DrawnBar, diagram
 from heuncli.report.digits import OPEN, OPEN_NOTE, rough
 from heuncli.report.labels import labels_of
 from heuncli.report.table_units import Units
-from heuncli.results_schema import RESULTANTS
+from heuncli.results_schema import RESULTANT_UNITS, RESULTANTS
 
 TURNED = frozenset({"M2"})  # whose ordinates point against e1, where they point to the side in tension
 SIDES = {"M1": "e2 up", "M2": "e1 up"}
 LETTERS = 0.009  # of a bar's length in a panel: what a letter of a name takes of it
+AT = ": t = "  # between the name of a run and an instant of it
 LONGEST = 60  # letters of the names at a place
 BAND = (
     "band: lowest and highest over the run at each place; line: the instant of the largest magnitude, which is marked"
@@ -67,7 +68,7 @@ def diagrams(
         notes.append(OPEN_NOTE)
     words += [f"{', '.join(own)}: {heading}" for heading, own in headings.items()]
     words += [BAND] * banded + [TENSION] * tension_side
-    return Figure(sources[0].study.results.title, words, panels, legend, notes)
+    return Figure(title_of(sources), words, panels, legend, notes)
 
 
 def _drawn(sources: Sequence[Pictured], name: str, at: Sequence[float] | None) -> Iterator[DrawnBar]:
@@ -126,7 +127,7 @@ def _sorted_out(drawn: Sequence[DrawnBar]) -> tuple[list[str], list[str]]:
         own.append(quantity)
     notes = [f"0 all along, and not drawn: {', '.join(zero)}"] if zero else []
     if within:
-        error = {bar.unit(q): bar.error(q) for q in within for bar in (drawn[0].bar,)}
+        error = {drawn[0].bar.unit(q): max(each.bar.error(q) for each in drawn) for q in within}
         told = ", ".join(f"{rough(size)} {unit}" for unit, size in error.items())
         notes.append(f"0 to their stated error ({told}), and not drawn: {', '.join(within)}")
     at_times = [q for q in shown if any(_open_at_times(each, q) for each in drawn)]
@@ -150,7 +151,7 @@ def _verdict(drawn: DrawnBar, quantity: str) -> str:
         return "zero"
     if not drawn.is_zero(quantity):
         return "some"
-    family = [q for q in RESULTANTS if UNITS[q] == UNITS[quantity]]
+    family = [q for q in RESULTANTS if RESULTANT_UNITS[q] == RESULTANT_UNITS[quantity]]
     return "within" if any(not drawn.is_zero(q) for q in family) else "unknown"
 
 
@@ -161,7 +162,7 @@ def _panels(
     unit, size = units.of("m")
     length = max(each.bar.length for each in drawn) * size
     x = Scaling(f"s [{unit}]", *ends(0.0, length, spare=0.02))
-    marks = _marks(drawn[0].bar, length, size)
+    marks = _marks(_standing(drawn), length, size)
     for k, quantity in enumerate(shown):
         label = f"{quantity} [{units.of(drawn[0].bar.unit(quantity))[0]}]"
         if tension_side and quantity in SIDES:
@@ -172,11 +173,28 @@ def _panels(
         yield own._replace(x=x if last else x._replace(label=""), items=items, title="" if k else name)
 
 
-def _marks(bar: WholeBar, length: float, size: float) -> list[tuple[float, str]]:
+def _standing(drawn: Sequence[DrawnBar]) -> list[tuple[float, list[str]]]:
+    """What stands along the bars, by its place [m], ascending; where it is not the same on all, with their names."""
+    bars = {id(each.bar): each for each in reversed(drawn)}
+    own = [(each.name.partition(AT)[0], each.bar.standing) for each in reversed(bars.values())]
+    first = own[0][1]
+    if all(_same(first, other) for _, other in own[1:]):
+        return first
+    return sorted((s, [f"{whose}: {name}" for name in names]) for whose, standing in own for s, names in standing)
+
+
+def _same(first: Sequence[tuple[float, list[str]]], other: Sequence[tuple[float, list[str]]]) -> bool:
+    """Whether the same stands at the same places."""
+    if [names for _, names in first] != [names for _, names in other]:
+        return False
+    return bool(np.allclose([s for s, _ in first], [s for s, _ in other]))
+
+
+def _marks(standing: Sequence[tuple[float, list[str]]], length: float, size: float) -> list[tuple[float, str]]:
     """What stands along a bar: places, and the names there; those of close ones stand together at the first."""
     found: list[tuple[float, str]] = []
     first = 0  # of those whose names stand together
-    for s, names in bar.standing:
+    for s, names in standing:
         text = ", ".join(names)
         if found and (size * s - found[first][0]) < LETTERS * length * 0.5 * (len(found[first][1]) + len(text) + 2):
             found[first] = found[first][0], f"{found[first][1]}, {text}"

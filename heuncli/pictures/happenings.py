@@ -13,6 +13,7 @@ from heuncli.pictures.courses import NumberCourse, Pictured, jumps_of
 from heuncli.results import Array, Results
 
 OFTEN = 5  # times
+INSTANT_DIGITS = 6  # as tables show at most
 
 
 def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tuple[list[Upright], list[str]]:
@@ -20,17 +21,18 @@ def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tu
 
     What happens again and again has its words where it does so first.
     """
-    found: dict[float, str] = {}
+    names: dict[float, dict[str, None]] = {}  # of one instant, what happens then in any order of the runs
     for source in sources:
         results = source.study.results
         claimed = _claimed_to(results)
         for at, words in (*_blows(results), *_events(results)):
             if at < claimed:
-                found.setdefault(at, words)
+                names.setdefault(at, {})[words] = None
     if len(sources) > 1:  # the end of one of several curves is told where it is; of all of them the panel is hatched
         for source in sources:
             if (horizon := _claimed_to(source.study.results)) < np.inf:
-                found.setdefault(horizon, f"horizon of {source.name}")
+                names.setdefault(horizon, {})[f"horizon of {source.name}"] = None
+    found = {at: ", ".join(own) for at, own in names.items()}
     known = np.sort(np.array(list(found)))
     for at in (at for course in courses for at in jumps_of(course).tolist()):
         if not _near(known, at):
@@ -61,7 +63,7 @@ def told(words: str, at: float) -> str:
 
 def instant(at: float) -> str:
     """An instant in words."""
-    return f"{short(float(f'{at:.4g}'))} s"
+    return f"{short(at, INSTANT_DIGITS)} s"
 
 
 def _near(known: Array, at: float) -> bool:

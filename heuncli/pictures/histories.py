@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
-from heuncli.drawing.ticks import ends, short
+from heuncli.drawing.figure import HEIGHT, Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
+from heuncli.drawing.ticks import ends, near_zero, short
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import (
     NumberCourse,
@@ -17,8 +17,11 @@ from heuncli.pictures.courses import (
     instants,
     jumps_of,
     require_one_number,
+    title_of,
     values_at,
+    varies,
 )
+from heuncli.pictures.error_bands import is_seen
 from heuncli.pictures.happenings import instant, marks_of
 from heuncli.pictures.measured_points import MeasuredPoints, seen
 from heuncli.pictures.refusals import NotDrawable
@@ -30,13 +33,10 @@ from heuncli.study.ask.measure import Peak
 from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
-VISIBLE = 0.5  # pixels: half of a band, below which that of an error is not seen
 SPARE = 0.12  # of what is drawn, above and below it: room for the words at extremes
-STEADY = 1e-9  # of its size: what varies by less does not vary
-HEIGHTS = (280.0, 210.0, 170.0)  # pixels of a panel that stands alone, of each of two, of more
+HEIGHTS = (280.0, 210.0, HEIGHT)  # pixels of a panel that stands alone, of each of two, of more
 OF_PATHS = 480.0  # pixels at most, of the path of a point
 MOST_TIMES, MOST_OVER = 1_000_000, 20_000  # instants of a curve over time, of which few are kept, and over a number
-CASE = " (case "  # behind a title
 OVER_NOTHING = "beyond the horizon: nothing is claimed"
 ALL_OPEN = "open: the laws of rigid bodies do not give this number"
 # what is measured in a unit, as axes tell it
@@ -98,20 +98,13 @@ def history(
         panels.append(Panel(x._replace(label=""), y, tuple(items), height, equal))
     panels[-1] = panels[-1]._replace(x=x)
     return Figure(
-        _title([source.study.results.title for source in sources]),
+        title_of(sources),
         [sentence for source in sources for sentence in _words(source)],
         panels,
         [(each.name, each.pen) for each in drawn],
         [*_notes(drawn, panels), *notes],
         [(each.name, len(drawn) + k, "square") for k, each in enumerate(measured)],
     )
-
-
-def _title(titles: Sequence[str]) -> str:
-    """What several runs are of; their cases stand in the legend."""
-    if len(titles) == 1:
-        return titles[0]
-    return " · ".join(dict.fromkeys(title.rpartition(CASE)[0] or title for title in titles))
 
 
 def _drawn(sources: Sequence[Pictured], paths: Sequence[str], over: str | None) -> Iterator[PanelCourse]:
@@ -175,9 +168,9 @@ def _axis_up(unit: str, drawn: Sequence[PanelCourse], measured: Sequence[Measure
     error = max(each.course.error or 0.0 for each in drawn)
     reach = error if math.isfinite(error) else 0.0
     band = size * (low - reach), size * (high + reach)  # of errors, which may reach farther than what is drawn
-    if not high - low > max(STEADY * max(abs(low), abs(high)), 2.0 * error):
+    if not varies(low, high, error):
         low = high = 0.0 if max(abs(low), abs(high)) <= error else 0.5 * (low + high)
-    low, high = ends(size * low, size * high, zero=_near_zero(low, high), spare=SPARE)
+    low, high = ends(size * low, size * high, zero=near_zero(low, high), spare=SPARE)
     return Scaling(label, min(low, band[0]), max(high, band[1]))
 
 
@@ -190,11 +183,6 @@ def _range(values: Array) -> tuple[float, float]:
     """The least and the greatest that is known; 0 and 1 where nothing is."""
     known = values[np.isfinite(values)]
     return (float(known.min()), float(known.max())) if known.size else (0.0, 1.0)
-
-
-def _near_zero(low: float, high: float) -> bool:
-    """Whether zero belongs on an axis: it is in reach of what is drawn, beside how far that goes."""
-    return low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
 
 
 def _blanks(sources: Sequence[Pictured], drawn: Sequence[PanelCourse], x: Scaling, across: Across) -> Iterator[Item]:
@@ -215,7 +203,7 @@ def _curves(drawn: Sequence[PanelCourse], y: Scaling, size: float, across: Acros
     for each in drawn:
         values, x = size * each.course.values, across.size * each.x
         error = size * (each.course.error or 0.0)
-        if error * height > VISIBLE * (y.high - y.low) and np.isfinite(error):
+        if is_seen(error, y, height):
             yield Band(f"stated error of {each.name}", x, values - error, values + error, each.pen)
         yield Trace(each.name, x, values, each.pen)
     for each in drawn:
@@ -225,15 +213,15 @@ def _curves(drawn: Sequence[PanelCourse], y: Scaling, size: float, across: Acros
 def _extremes(drawn: PanelCourse, size: float, across: Across) -> Iterator[Spot]:
     """The lowest and the highest with their values and instants; of what does not vary its value."""
     low, high, error = drawn.course.low, drawn.course.high, drawn.course.error or 0.0
-    varies = high.value - low.value > max(STEADY * max(abs(low.value), abs(high.value)), 2.0 * error)
-    for word, peak in (("greatest", high), ("least", low)) if varies else (("", high),):
+    is_varying = varies(low.value, high.value, error)
+    for word, peak in (("greatest", high), ("least", low)) if is_varying else (("", high),):
         if peak.at is None or not math.isfinite(peak.value):
             continue
         x, at = _place(drawn, peak, across)
-        if varies:
+        if is_varying:
             text = f"{figures(peak.value, error, size)} at {at}"
         else:
-            text = figures(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
+            text = steady(peak.value, error, size) + ("" if len(drawn.x) == 1 else " throughout")
             x = across.size * float(drawn.x[np.argmax(np.isfinite(drawn.x + drawn.course.values))])
         if not math.isfinite(x):  # what it is drawn over is open there
             continue
@@ -246,17 +234,24 @@ def _place(drawn: PanelCourse, peak: Peak, across: Across) -> tuple[float, str]:
     if across.over is None:
         return peak.at, instant(peak.at)
     x = across.size * float(values_at(drawn.source.study, across.over, np.array([peak.at]))[0])
-    return x, f"{short(float(f'{x:.4g}'))} {'' if across.unit == '1' else across.unit}".rstrip()
+    return x, f"{short(x, 4)} {'' if across.unit == '1' else across.unit}".rstrip()
+
+
+def steady(value: float, error: float, size: float) -> str:
+    """A number that does not vary; of one below its error, which may be of either sign, that error; ?: not known."""
+    if 0.0 < abs(value) <= error:
+        return "?" if math.isinf(error) else f"not above its stated error, {rough(size * error)},"
+    return figures(value, error, size)
 
 
 def figures(value: float, error: float, size: float) -> str:
     """A number in its unit as it is shown, to no more digits than its error leaves."""
     if value == 0.0 or abs(value) <= error:
-        return "0"
+        return "?" if math.isinf(error) else "0"
     known = DIGITS
     if error > 0.0:
         known = min(DIGITS, math.floor(math.log10(abs(value))) - math.floor(math.log10(error)))
-    return short(float(f"{size * value:.{max(known, 1)}g}"))
+    return short(size * value, max(known, 1))
 
 
 def _words(source: Pictured) -> Iterator[str]:

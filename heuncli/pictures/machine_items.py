@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.joint_kinds import JOINTS, TYPES, Kind
 from heuncli.named_tuples import NamedTuple
@@ -29,7 +30,8 @@ MOST_NAMED = 60  # bodies and joints: beyond that a picture of names alone
 MOST_CENTRES = 40  # bodies whose centres of mass are marked
 BAR, ARM, THIN = 3.0, 2.0, 0.7  # pixels: a body that is lines, lines beside shapes, of an instant not the first
 LEVEL = 1e-6  # of the depth of a picture: what is as far
-DOWN = (0.0, -1.0)
+DOWN, UP = (0.0, -1.0), (0.0, 1.0)
+STEEP = 0.2  # rise over run: what goes down less steeply from its support does not hang
 TURNS: Mapping[str, tuple[str, str]] = {  # how it lets turn, seen along the axis and from aside
     "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"), "all": ("square", "square"),
     "slider": ("slider", "slider"),
@@ -96,8 +98,12 @@ class Stood:
         """Where the ground is drawn that holds a body at a place: under it, over it where the body hangs."""
         if body == GROUND:
             return DOWN
-        centre = self.seen(body, self.centers[body], k)
-        return (0.0, 1.0) if centre[1] < place[1] - 0.2 * abs(centre[0] - place[0]) else DOWN
+        return ground_side(place, self.seen(body, self.centers[body], k))
+
+
+def ground_side(place: Array, other: Array) -> tuple[float, float]:
+    """On which side of a place the ground is drawn that holds it: below, or above where what it holds hangs from it."""
+    return UP if other[1] < place[1] - STEEP * abs(other[0] - place[0]) else DOWN
 
 
 class SeenPiece(NamedTuple):
@@ -247,8 +253,9 @@ def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin
     items: list[Item] = []
     for body, place, other in ((look.a, first, second), (look.b, second, first)):
         if body == GROUND:
-            below = (0.0, 1.0) if other[1] < place[1] - 0.2 * abs(other[0] - place[0]) else DOWN
-            items.append(Symbol(*on_paper(place), "foot", below, None, f"{look.name}: on the ground"))
+            items.append(
+                Symbol(*on_paper(place), "foot", ground_side(place, other), None, f"{look.name}: on the ground")
+            )
     return [*items, Link(*on_paper(first), *on_paper(second), kind, pen, f"{look.name}: {look.kind}")]
 
 
@@ -282,13 +289,12 @@ def marks(stood: Stood, k: int) -> Iterator[Symbol]:
         pen, centre = stood.pens[body.name], stood.centers[body.name]
         masses = stood.masses[body.name]
         for place in masses:
-            yield Symbol(
-                *on_paper(stood.seen(body.name, place, k)), "mass", (1.0, 0.0), pen, f"{body.name}: point mass"
-            )
-        if few and not any(np.allclose(place, centre, rtol=0.0, atol=1e-12) for place in masses):
-            yield Symbol(
-                *on_paper(stood.seen(body.name, centre, k)), "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass"
-            )
+            at = on_paper(stood.seen(body.name, place, k))
+            yield Symbol(*at, "mass", (1.0, 0.0), pen, f"{body.name}: point mass")
+        near = tolerances.ONE_PLACE * float(np.abs(centre).max())
+        if few and not any(np.abs(place - centre).max() <= near for place in masses):
+            at = on_paper(stood.seen(body.name, centre, k))
+            yield Symbol(*at, "centre", (1.0, 0.0), pen, f"{body.name}: centre of mass")
 
 
 def names(stood: Stood, k: int) -> Iterator[PlaceLabel]:

@@ -67,6 +67,8 @@ def measured(asked: AskedPoints, x_unit: str, units: Sequence[str]) -> MeasuredP
         raise _refused(asked, error.finding) from None
     except CsvError as error:
         raise _refused(asked, error.finding, (error.line, error.column)) from None
+    if not len(x):
+        raise _refused(asked, Finding("table-file", "there is no row of numbers in it", "a row a point: 0.1,12.5"))
     over = _in_si(asked, asked.x, columns[0].unit, x, [x_unit])
     up = _in_si(asked, asked.y, columns[1].unit, y, units)
     for values in (over[1], up[1]):

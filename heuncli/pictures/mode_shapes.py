@@ -27,6 +27,7 @@ HEIGHT = 230.0  # pixels
 MOST = 12  # modes that are drawn
 SHARE = 0.12  # of the machine's extent: how far its farthest point is drawn to move
 TURNED = 0.35  # [rad] the farthest turn, beyond which lines drawn by the first order are too long
+FAR = 3.0  # of the extent: supports farther off, as of planes, are not drawn
 EDGE = 0.05  # of the extent: beyond what is drawn
 PHASE = 0.02  # of the largest displacement: smaller parts of the other phase are none
 REST, ONE, OTHER = None, 0, 1  # pens
@@ -55,11 +56,13 @@ def mode_shapes(found: MovedBodies, machine: Machine, view: SceneView) -> Figure
     if not modes:
         raise NotDrawable("modes: nothing is free to oscillate", "heun run moves what is driven")
     lines = list(_lines(found, machine))
-    supports = list(_supports(found, machine))
     resting = np.concatenate([line.points for line in lines])
     extent = float(np.ptp(view.flat(resting), axis=0).max()) or 1.0
+    middle = resting.mean(axis=0)
+    supports = [place for place in _supports(machine) if np.linalg.norm(place - middle) <= FAR * extent]
     drawn = [_drawn(found, k, mode, lines, extent) for k, mode in enumerate(modes[:MOST])]
     every = np.concatenate([view.flat(np.concatenate(way)) for mode in drawn for way in (mode.one, mode.other)])
+    every = np.concatenate([every, *(view.flat(place)[None] for place in supports)])
     low, high = every.min(axis=0) - EDGE * extent, every.max(axis=0) + EDGE * extent
     axes = tuple(Scaling("", float(a), float(b)) for a, b in zip(low, high, strict=True))
     panels = [_panel(mode, lines, supports, view, (axes[0], axes[1])) for mode in drawn]
@@ -96,7 +99,7 @@ def _cross(body: Body) -> list[Array]:
     return [np.array([body.center - a * e, body.center + a * e]) for a, e in zip(reach, np.eye(3), strict=True)]
 
 
-def _supports(found: MovedBodies, machine: Machine) -> Iterator[Array]:
+def _supports(machine: Machine) -> Iterator[Array]:
     """Where joints stand on the ground, (3,)."""
     for joint in machine.joints:
         if joint.a == GROUND:

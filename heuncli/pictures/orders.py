@@ -44,7 +44,8 @@ def orders(sources: Sequence[BalancedScene], units: Units) -> Figure:
     left = any(source.found.counterbalance is not None for source in sources)
     legend = [("as it is", PEN), (LEFT, PEN_LEFT)] if left else []
     notes = [note for source in sources for note in source.found.notes]
-    return Figure(sources[0].found.title or "Balance", words, panels, legend, notes)
+    titles = dict.fromkeys(source.found.title for source in sources if source.found.title)
+    return Figure(" · ".join(titles) or "Balance", words, panels, legend, notes)
 
 
 def _largest(found: BalanceResults, quantity: str) -> float:

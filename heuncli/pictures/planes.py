@@ -18,7 +18,6 @@ from heuncli.study.ask.study import Study
 
 LETTERS = ("x", "y", "z")
 OF_JOINTS = ("joints", "coordinates")
-FLAT = 1e-9  # of the largest vector: what a component may be that is none
 
 
 class Plane(NamedTuple):
@@ -119,4 +118,4 @@ def _in_axes(poses: Poses, of: str, seen_from: str, axis: Array) -> Array:
 def _is_flat(vectors: Array, axis: Array) -> bool:
     """Whether vectors (n, 3) have no component along an axis."""
     largest = float(np.nanmax(np.abs(vectors), initial=0.0))
-    return bool(np.nanmax(np.abs(vectors @ axis), initial=0.0) <= FLAT * largest)
+    return bool(np.nanmax(np.abs(vectors @ axis), initial=0.0) <= tolerances.IN_ONE_PLANE * largest)

@@ -13,7 +13,7 @@ import numpy as np
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, Scaling, Spot, Trace
 from heuncli.drawing.ticks import ends, ticks
 from heuncli.pictures.certain import certain
-from heuncli.pictures.courses import Pictured, vectors_at
+from heuncli.pictures.courses import Pictured, title_of, vectors_at
 from heuncli.pictures.polar_words import notes_of, seen
 from heuncli.pictures.tips import Largest, TipCurve, largest_of, tip_curves
 from heuncli.pictures.turning import TurningRun
@@ -48,14 +48,15 @@ def polar(
     panels = [_panel(group, largest, units) for group in groups.values()]
     words = list(seen(sources, curves, axes))
     notes = [note for curve in curves for note in notes_of(curve, largest[curve.pen], units)]
-    title = sources[0].study.results.title
-    return Figure(title, words, panels, [(curve.name, curve.pen) for curve in curves], notes)
+    return Figure(title_of(sources), words, panels, [(curve.name, curve.pen) for curve in curves], notes)
 
 
 def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], units: Units) -> Panel:
     """The curves of one unit in one plane, with equal axes about their origin."""
     unit, size = units.of(group[0].unit)
-    across, up = _sides([size * curve.x for curve in group], [size * curve.y for curve in group])
+    found = [own for curve in group if (own := largest[curve.pen]) is not None]
+    unknown = size * max((own.error for own in found if own.size <= own.error), default=0.0)
+    across, up = _sides([size * curve.x for curve in group], [size * curve.y for curve in group], unknown)
     quantity = _quantity(group)
     first, second = group[0].plane.names
     x, y = Scaling(f"{quantity}.{first} [{unit}]", *across), Scaling(f"{quantity}.{second} [{unit}]", *up)
@@ -70,12 +71,15 @@ def _panel(group: Sequence[TipCurve], largest: Mapping[int, Largest | None], uni
     return Panel(x, y, tuple(items), HEIGHT, equal=True)
 
 
-def _sides(xs: Sequence[Array], ys: Sequence[Array]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """The ends of both axes, the origin between them, neither side too slim."""
+def _sides(xs: Sequence[Array], ys: Sequence[Array], unknown: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """The ends of both axes, the origin between them, neither side too slim; unknown: the error of what is within it.
+
+    So rounding is a point, not a curve.
+    """
     sides = []
     for values in (np.concatenate(xs), np.concatenate(ys)):
         known = values[np.isfinite(values)]
-        sides.append((float(known.min(initial=0.0)), float(known.max(initial=0.0))))
+        sides.append((float(known.min(initial=-unknown)), float(known.max(initial=unknown))))
     longest = max(high - low for low, high in sides) or 1.0
     found = []
     for low, high in sides:

@@ -7,13 +7,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.drawing.ticks import short
 from heuncli.pictures.certain import certain
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.tips import Largest, TipCurve
 from heuncli.report.table_units import Units
-
-THRUST = 1e-6  # of the largest vector: what stands across the plane and is worth a note
 
 
 def seen(sources: Sequence[Pictured], curves: Sequence[TipCurve], axes: str) -> Iterator[str]:
@@ -51,7 +50,7 @@ def notes_of(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator
     told = f"{certain(size * largest.size, size * largest.error)} {unit}"
     yield f"{curve.name}: {f'{told} all along' if largest.steady else f'largest {told} {_where(curve, largest)}'}"
     along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
-    if along > THRUST * largest.size:
+    if along > tolerances.TOLD_ACROSS * largest.size:
         yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
     if np.isnan(curve.vectors).any():
         yield f"{curve.name}: open or not known in parts, and not drawn there"
@@ -64,7 +63,7 @@ def _where(curve: TipCurve, largest: Largest) -> str:
     """The direction, the instant and the crank's angle of the largest."""
     first, second = curve.plane.names
     way = f"towards {_degrees(math.degrees(math.atan2(largest.y, largest.x)), 360.0)} from {first} to {second}"
-    when = f"at t = {short(float(f'{largest.at:.5g}'))} s"
+    when = f"at t = {short(largest.at, 5)} s"
     turning = curve.turning
     if turning.path:
         angle = float(np.interp(largest.at, turning.times, turning.counted))

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.drawing.figure import Arrow, Item, PlaceLabel, Strokes, Symbol
 from heuncli.drawing.ticks import short
 from heuncli.kinetostatics.actions import AppliedLoad
@@ -16,10 +17,10 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.machine_items import on_paper
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Block
+from heuncli.results_schema import AT_A_BLOW
 from heuncli.scenery.views import SceneView
 from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
-from heuncli.tolerances import EPS
 
 JOINTS_PEN, APPLIED_PEN = 1, 3
 LOADS = frozenset({"joints"})
@@ -27,13 +28,11 @@ LONGEST = 0.2  # of the picture's larger side: the arrow of the largest
 HIGHEST = 0.08  # of it: a distributed load where it is densest
 LEAST = 0.004  # of it: what is shorter is seen from its end
 SMALL = 1e-4  # of the largest: what is less is not drawn
-ROUNDED = 100.0 * EPS  # of what numbers are summed from: what is less is rounding
 FACING = 0.95  # of a moment that must be about the line of sight to be drawn
 MOST_VALUES = 16  # arrows whose values are written beside them
 TEETH = 9  # arrows of a distributed load
 DIGITS = 3  # of these values
 KINDS = ((JOINTS_PEN, "of joints, from ON to"), (APPLIED_PEN, "applied"))
-PER_TIME = {"N": "N·s", "N·m": "N·m·s"}  # of a blow
 
 
 class Pull(NamedTuple):
@@ -74,7 +73,7 @@ class Pulls(NamedTuple):
     def unit(self, units: Units, *, turning: bool = False) -> tuple[str, float]:
         """The unit shown, and how many of it one in SI is."""
         unit = "N·m" if turning else "N"
-        return units.of(PER_TIME[unit] if self.struck else unit)
+        return units.of(AT_A_BLOW[unit] if self.struck else unit)
 
 
 NOTHING = Pulls((), (), ())
@@ -98,7 +97,7 @@ def pulls_of(study: Study, t: float) -> Pulls:
             found.append(Pull(own.load.name, own.action.to.position[0], vector[0], APPLIED_PEN, turns))
     of = study.load_magnitudes
     rounding = {
-        turns: max(ROUNDED * of.by_unit.get(unit, 0.0), of.errors.get(("reactions", unit), 0.0))
+        turns: max(tolerances.NOTHING_ACTS * of.by_unit.get(unit, 0.0), of.errors.get(("reactions", unit), 0.0))
         for turns, unit in ((False, "N"), (True, "N·m"))
     }
     return _pulls(found, spreads, rounding)
@@ -186,7 +185,7 @@ def _force(pull: Pull, view: SceneView, size: float, scale: float, least: float)
 def _value(pull: Pull, place: Array, unit: str, of_it: float) -> PlaceLabel:
     """Its magnitude, and the name of what is applied."""
     applied = pull.pen == APPLIED_PEN
-    text = f"{pull.name} " * applied + f"{_digits(of_it * pull.size)} {unit}"
+    text = f"{pull.name} " * applied + f"{short(of_it * pull.size, DIGITS)} {unit}"
     return PlaceLabel(*on_paper(place), text, pull.name if applied else "", pull.pen, spare=not applied)
 
 
@@ -201,7 +200,7 @@ def _comb(one: SpreadLoad, pulls: Pulls, view: SceneView, size: float, side: flo
         yield Arrow(tail[0], tail[1], way[0], way[1], APPLIED_PEN)
     yield Strokes(np.stack([tails[:-1], tails[1:]], axis=1), APPLIED_PEN)
     (force, of_force), (length, of_length) = units.of("N"), units.of("m")
-    values = [_digits(of_force / of_length * float(np.linalg.norm(density))) for density in one.densities]
+    values = [short(of_force / of_length * float(np.linalg.norm(density)), DIGITS) for density in one.densities]
     text = f"{one.name} {' to '.join(dict.fromkeys(values))} {force}/{length}"
     yield PlaceLabel(*on_paper(tails[TEETH // 2]), text, one.name, APPLIED_PEN)
 
@@ -220,8 +219,3 @@ def round_below(value: float) -> float:
     """The largest of 1, 2, 5, 10, 20, ... that is not above half a number."""
     power = 10.0 ** math.floor(math.log10(0.5 * value))
     return next(m * power for m in (5.0, 2.0, 1.0) if m * power <= 0.5 * value * (1.0 + 1e-12))
-
-
-def _digits(value: float) -> str:
-    """A value in few digits."""
-    return short(float(f"{value:.{DIGITS}g}"))

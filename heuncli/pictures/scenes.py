@@ -13,7 +13,7 @@ from heuncli.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scali
 from heuncli.drawing.ticks import short
 from heuncli.mechanism.model import Mechanism
 from heuncli.pictures import machine_items, traces
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.courses import Pictured, require_claimed
 from heuncli.pictures.machine_items import Stood
 from heuncli.pictures.pulls import NOTHING, Pulls, drawn, key, pulls_of
 from heuncli.pictures.traces import Traced
@@ -45,9 +45,11 @@ def scene(
 ) -> Figure:
     """The figure of one run at some instants (n,) ascending; default: its first. traced: points, `body.point`.
 
-    A body's point `center` is its centre of mass, where none is named so. Raises Finding for a view that there is not.
+    A body's point `center` is its centre of mass, where none is named so. Raises Finding for a view that there is not,
+    NotDrawable for a run of which nothing is claimed.
     """
     study = source.study
+    require_claimed(study)
     times = study.results.time[:1] if at is None else at
     poses = poses_of(study, times)
     stood = standing(study.setup.scene, study.spec, poses, view, units)

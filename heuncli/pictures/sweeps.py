@@ -14,13 +14,13 @@ import numpy as np
 from heuncli.drawing.figure import Band, Bars, Cells, Figure, Item, Panel, Scaling, Spot, Strokes, Trace
 from heuncli.drawing.pens import PENS
 from heuncli.pictures.certain import certain
+from heuncli.pictures.error_bands import is_seen
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.pictures.swept import PickedTable, SweptNumbers, SweptTable, SweptVariable, example, picked
 from heuncli.pictures.variable_axes import NAMES_MOST, axis_of, edges_of, measured_axis
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Indices
 
-VISIBLE = 0.004  # of a panel's height: below, the band of an error is not seen
 MARKED = 40  # points of a curve that are marked, at most
 POINTS = ("circle", "square", "triangle", "diamond", "tip", "bow")
 FEW_LEVELS = 3  # of the second of two variables: these are curves, no field
@@ -114,7 +114,7 @@ def _groups(own: PickedTable, others: Sequence[SweptVariable]) -> list[tuple[str
 
 def _curve(name: str, x: Array, values: Array, errors: Array, y: Scaling, number: int) -> Iterator[Item]:
     """A curve with the band of its stated errors where that is seen."""
-    if np.nanmax(np.where(np.isfinite(values), errors, 0.0), initial=0.0) > VISIBLE * (y.high - y.low):
+    if is_seen(float(np.nanmax(np.where(np.isfinite(values), errors, 0.0), initial=0.0)), y):
         yield Band(f"stated error of {name}", x, values - errors, values + errors, number)
     yield Trace(name, x, values, number)
 
@@ -149,7 +149,7 @@ def _bars(own: PickedTable, units: Units) -> Drawn:
         values, errors = size * measure.values, size * measure.errors
         y = measured_axis(shown, np.append(values, 0.0), np.append(errors, 0.0), spare=0.2)
         items: list[Item] = [Bars(measure.text, across.values, values)]
-        seen = np.isfinite(values) & (errors > VISIBLE * (y.high - y.low))
+        seen = np.isfinite(values) & np.array([is_seen(error, y) for error in errors.tolist()])
         if seen.any():
             at, middle, off = across.values[seen], values[seen], errors[seen]
             low, high = np.column_stack([at, middle - off]), np.column_stack([at, middle + off])

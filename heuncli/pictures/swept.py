@@ -11,6 +11,7 @@ from itertools import compress
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
@@ -18,7 +19,6 @@ from heuncli.pictures.refusals import NotDrawable
 from heuncli.results import Array, Mask
 from heuncli.variants.axes import figure_of
 
-SAME = 1e-9  # relative: numbers of one value, typed and made
 APART = 0.8  # of the rows: a variable with more values than that is no axis of a grid, where there are several such
 FEWEST = 4  # rows by which that is seen
 
@@ -133,7 +133,7 @@ def _held(variable: SweptVariable, text: str) -> Mask:
         if figure is None or figure.unit not in ("", variable.unit):
             unit = f" in {variable.unit}" if variable.unit else ""
             raise NotDrawable(f"{variable.name}={text}: expected a number{unit}", f"such as {example(variable)}")
-        found = np.isclose(variable.values, figure.value, rtol=SAME, atol=0.0)
+        found = np.isclose(variable.values, figure.value, rtol=tolerances.SAME_VALUE, atol=0.0)
     if not found.any():
         raise NotDrawable(f"{variable.name}={text}: no variant has this value", f"such as {example(variable)}")
     return np.asarray(found)

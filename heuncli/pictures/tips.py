@@ -11,18 +11,16 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.pictures.courses import Pictured, instants, vectors_at
+from heuncli.pictures.courses import Pictured, instants, varies, vectors_at
 from heuncli.pictures.planes import Plane, plane_of, plane_seen_along
 from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.turning import TurningRun, angles_of, turning_of
+from heuncli.pictures.turning import TurnedVectors, TurningRun, angles_of, turning_of
 from heuncli.results import Array
 from heuncli.results_schema import SPACE
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.search import extremes
 from heuncli.variants.stated import unit_of
-
-EQUAL = 1e-9  # of the largest vector: no larger than others that differ by less
 
 
 class TipCurve(NamedTuple):
@@ -88,7 +86,7 @@ def _require_vector(study: Study, path: str) -> None:
     if numbers.axes != (SPACE,) or not numbers.timed:
         message = f"polar {path}: a polar diagram is of a vector over the instants, and this is none"
         raise NotDrawable(message, "such as polar joints.main, or polar foundation")
-    if study.of_one_instant:
+    if study.of_one_instant or len(instants(study)) < 2:
         message = f"polar {path}: there is one instant, and so no curve"
         raise NotDrawable(message, "give the scene a motion: analysis.duration")
 
@@ -96,9 +94,11 @@ def _require_vector(study: Study, path: str) -> None:
 def _turning(study: Study, paths: Sequence[str]) -> TurningRun:
     """What is seen of a run."""
     candidates = [path for path in angles_of(study.spec) if path.split(".")[1] in study.results.coordinates]
-    return turning_of(
-        study, instants(study), candidates, lambda t: np.hstack([vectors_at(study, path, t) for path in paths])
+    errors = [stated_error(study, study.numbers(path).keys) for path in paths]
+    looked_at = TurnedVectors(
+        lambda t: np.stack([vectors_at(study, path, t) for path in paths], axis=1), np.nan_to_num(errors, posinf=0.0)
     )
+    return turning_of(study, instants(study), candidates, looked_at)
 
 
 def largest_of(curve: TipCurve) -> Largest | None:
@@ -121,4 +121,4 @@ def largest_of(curve: TipCurve) -> Largest | None:
     x, y = float(vector @ plane.right), float(vector @ plane.up)
     size, error = math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error
     least = float(np.nanmin(np.hypot(curve.x, curve.y)))
-    return Largest(x, y, size, error, at, size - least <= max(error, EQUAL * size))
+    return Largest(x, y, size, error, at, not varies(least, size, error))

@@ -15,6 +15,7 @@ from heuncli.scenery.poses import poses_of
 
 CENTER = "center"  # a body's point of that name is its centre of mass, where the spec names none so
 MOST = 8  # ways that are drawn because the spec reports its points
+SAME_WAY = 1e-6  # of how far a way goes: two that are nearer are drawn as one
 
 
 class Traced(NamedTuple):
@@ -49,7 +50,7 @@ def reported(source: Pictured) -> list[Traced]:
     found: list[Traced] = []
     for one in traced(source, [f"{body}.{point}" for body, own in spec.bodies.items() for point in own.points]):
         size = float(np.ptp(one.way, axis=0).max())
-        if size > 0.0 and not any(np.allclose(one.way, other.way, rtol=0.0, atol=1e-6 * size) for other in found):
+        if size > 0.0 and not any(np.allclose(one.way, other.way, rtol=0.0, atol=SAME_WAY * size) for other in found):
             found.append(one)
     return found[:MOST]
 

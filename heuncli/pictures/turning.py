@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -21,11 +22,16 @@ from heuncli.study.ask.study import Study
 
 TURN = 2.0 * math.pi
 LEAST = 0.25 * TURN  # what turns less is no crank
-SAME = 2e-3  # of the largest vector: a pixel of the picture
 CLOSELY = 721  # instants of what is drawn
 COMPARED = 128  # angles of a cycle at which it is held against the one before
 ALMOST = 1e-6  # of a turn: a run that was to end with it
-VectorsAt = Callable[[Array], Array]  # of instants (n,) what is looked at there, (n, ...)
+
+
+class TurnedVectors(NamedTuple):
+    """What is looked at: at some instants (n,) vectors (n, k, 3), and the errors of these (k,)."""
+
+    at: Callable[[Array], Array]
+    errors: Array
 
 
 class TurningRun(NamedTuple):
@@ -67,7 +73,7 @@ def angles_of(spec: Spec) -> list[str]:
     return [f"coordinates.{name}.angle" for name in dict.fromkeys(driven or grounded or turning)]
 
 
-def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at: VectorsAt) -> TurningRun:
+def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors: TurnedVectors) -> TurningRun:
     """How a run turns that is seen at some instants (n,), in that of some angles that turns farthest."""
     whole, farthest = TurningRun(times, "", np.zeros(0), 0), LEAST
     for path in candidates:
@@ -75,7 +81,7 @@ def turning_of(study: Study, times: Array, candidates: Sequence[str], vectors_at
         if np.isfinite(angles).all() and goes_on(angles) and span(angles) > farthest:
             whole, farthest = TurningRun(times, path, angles, 0), span(angles)
     for turns in (1, 2):
-        if whole.path and comes_back(study, whole, turns, vectors_at):
+        if whole.path and comes_back(study, whole, turns, vectors):
             return last_of(study, whole, turns)
     return whole
 
@@ -91,16 +97,16 @@ def span(angles: Array) -> float:
     return abs(float(angles[-1] - angles[0])) if len(angles) else 0.0
 
 
-def comes_back(study: Study, whole: TurningRun, turns: int, vectors_at: VectorsAt) -> bool:
+def comes_back(study: Study, whole: TurningRun, turns: int, vectors: TurnedVectors) -> bool:
     """Whether the last so many turns are as those before them."""
     angle = whole.way * TURN * turns
     if span(whole.angles) < 2.0 * abs(angle) - ALMOST * TURN:
         return False
     near = seen_from(study, whole, float(instants_at(whole, whole.angles[-1:] - 2.0 * angle)[0]))
     back = angle * np.linspace(1.0, 0.0, COMPARED)
-    last, before = (vectors_at(instants_at(near, near.angles[-1] - back - k * angle)) for k in (0, 1))
-    size = float(np.nanmax(np.abs(last), initial=0.0))
-    return bool(np.nanmax(np.abs(last - before), initial=0.0) <= SAME * size)
+    last, before = (vectors.at(instants_at(near, near.angles[-1] - back - k * angle)) for k in (0, 1))
+    size, off = (np.nanmax(np.abs(own), axis=(0, 2), initial=0.0) for own in (last, last - before))
+    return bool((off <= np.maximum(tolerances.COMES_ROUND * size, 2.0 * vectors.errors)).all())  # each by its own size
 
 
 def last_of(study: Study, whole: TurningRun, turns: int) -> TurningRun:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.drawing.figure import Scaling
-from heuncli.drawing.ticks import ends
+from heuncli.drawing.ticks import ends, near_zero
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.swept import SweptVariable
 from heuncli.results import Array
@@ -72,5 +72,4 @@ def measured_axis(unit: str, values: Array, errors: Array, spare: float = 0.12) 
     known = np.isfinite(values)
     low = float((values - errors)[known].min()) if known.any() else 0.0
     high = float((values + errors)[known].max()) if known.any() else 1.0
-    zero = low <= 0.0 <= high or min(abs(low), abs(high)) < high - low
-    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=zero, spare=spare))
+    return Scaling(f"[{unit or '-'}]", *ends(low, high, zero=near_zero(low, high), spare=spare))

@@ -15,6 +15,7 @@ from heuncli.pictures.machine_items import Stood
 from heuncli.results import Array
 
 FAR = 12.0  # times as far as all joints and centres reach: what is drawn in part
+ROUNDING = 1e-9  # of what is seen: joints and centres that are no farther apart stand in one place
 BESIDE = 0.8  # of these, shown around them then
 SPARE = 0.07  # of the larger side, around all
 NARROW = np.array([0.8, 0.35])  # of the larger side: the smaller one at least, across for the words of the key
@@ -48,7 +49,8 @@ def window_of(stood: Stood, ways: Sequence[Array]) -> Window:
     notes: list[str] = []
     inner = core.min(axis=0), core.max(axis=0)
     reach = float((inner[1] - inner[0]).max())
-    if reach > 0.0 and float((high - low).max()) > FAR * reach:
+    across = float((high - low).max())
+    if reach > ROUNDING * across and across > FAR * reach:
         low, high = np.maximum(low, inner[0] - BESIDE * reach), np.minimum(high, inner[1] + BESIDE * reach)
         beyond = [name for name, own in far.items() if (own.min(axis=0) < low).any() or (own.max(axis=0) > high).any()]
         notes.append(f"drawn in part, reaching farther: {', '.join(beyond)}")

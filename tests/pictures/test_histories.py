@@ -109,7 +109,7 @@ def test_blows_and_events_stand_where_they_happen(heun: Heun, folder: Path) -> N
     (panel,) = drawn(heun, folder, spec("drill"), "bodies.drill.position.z")
     for name, event in found["events"].items():
         for at in event["time"]:
-            (mark,) = panel.curves[f"{name} at {float(f'{at:.4g}'):.6g} s"]
+            (mark,) = panel.curves[f"{name} at {at:.6g} s"]
             assert mark[:, 0] == pytest.approx(at, abs=panel.across)
     blows = [blow["time"] for blow in results(heun, spec("bouncing_ball"))["impulses"]]
     ball = drawn(heun, folder, spec("bouncing_ball"), "bodies.ball.velocity.z", "bodies.ball.center.z")[0]
@@ -213,6 +213,15 @@ def test_the_same_bytes_every_time(heun: Heun, folder: Path) -> None:
         heun("plot", spec("engine"), "joints.main.force", "--x", "coordinates.main.angle", "-o", name)
         found.append((folder / name).read_bytes())
     assert found[0] == found[1]
+
+
+def test_what_happens_at_one_instant_is_all_named(heun: Heun, folder: Path) -> None:
+    """Two blows at one instant in two runs: the mark has the names of both."""
+    for name in ("push", "pull"):
+        blow = f"impulses: {{{name}: {{on: wheel.rim, vector: [0, 0, 1], time: 0.5}}}}\n"
+        (folder / f"{name}.yaml").write_text(TURNING.replace("drives: {motor: {joint: shaft, angle: 2*pi*t}}\n", blow))
+    (panel,) = drawn(heun, folder, "push.yaml", "pull.yaml", "energy.kinetic")
+    assert "push, pull at 0.5 s" in panel.curves
 
 
 def test_the_whole_of_a_number_without_unit_is_told(heun: Heun, folder: Path) -> None:

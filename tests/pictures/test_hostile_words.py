@@ -9,7 +9,7 @@ import pytest
 
 from heuncli.foreign_text import shown
 from tests.shared.command import HANGING, Heun
-from tests.shared.drawn_panels import SPACE
+from tests.shared.plotted import SVG
 
 TITLES = [
     "<script>alert(1)</script>", "a & b &amp; c", "\"quoted\" 'twice'", "]]> <!-- x -->", "\u202eright to left\u2066",
@@ -20,7 +20,7 @@ PATH = "joints.pivot.force"
 
 
 def tags(root: ElementTree.Element) -> set[str]:
-    return {shape.tag.removeprefix(SPACE) for shape in root.iter()}
+    return {shape.tag.removeprefix(SVG) for shape in root.iter()}
 
 
 def harmless(root: ElementTree.Element) -> bool:
@@ -36,7 +36,7 @@ def test_titles(heun: Heun, folder: Path, title: str) -> None:
     done = heun("plot", "named.yaml", PATH, "-o", "x.svg")
     assert (done.returncode, done.stderr) == (0, "")
     root = ElementTree.fromstring((folder / "x.svg").read_bytes())
-    assert harmless(root) and root.findtext(f"{SPACE}title") == shown(title)
+    assert harmless(root) and root.findtext(f"{SVG}title") == shown(title)
     letters = heun("plot", "named.yaml", PATH).stdout
     assert letters.split("\n", 1)[0].startswith(shown(title)[:20])
     assert all(c == "\n" or c.isprintable() for c in letters)
@@ -49,7 +49,7 @@ def test_file_names(heun: Heun, folder: Path, name: str) -> None:
     assert (done.returncode, done.stderr) == (0, "")
     root = ElementTree.fromstring((folder / "x.svg").read_bytes())
     assert harmless(root)
-    assert f"{shown(name[:-5])}: {PATH}" in [shape.text for shape in root.iter(f"{SPACE}text")]
+    assert f"{shown(name[:-5])}: {PATH}" in [shape.text for shape in root.iter(f"{SVG}text")]
 
 
 def test_headings_of_measured_columns(heun: Heun, folder: Path) -> None:

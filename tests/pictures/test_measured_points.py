@@ -10,7 +10,8 @@ import pytest
 
 from heuncli.results import Array
 from tests.shared.command import Heun
-from tests.shared.drawn_panels import SPACE, DrawnPanel, read
+from tests.shared.drawn_panels import DrawnPanel, read
+from tests.shared.plotted import SVG
 
 FORCE, RATE = "joints.pivot.force", "bodies.bar.angular_velocity"
 TEXT = "t [ms];F [kN];w/rpm;plain\n0;0,004;0;1\n250;0,006;-3;2\n500;0,008;4,5;3\n"
@@ -32,7 +33,7 @@ def squares(panel: DrawnPanel, folder: Path) -> Array:
     """The hollow marks of a panel, in its units: squares are polygons without a name."""
     shapes = ElementTree.parse(folder / "x.svg").getroot()
     found = []
-    for shape in shapes.iter(f"{SPACE}polygon"):
+    for shape in shapes.iter(f"{SVG}polygon"):
         if shape.get("fill") == "#ffffff" and not len(shape):
             found.append(np.mean([[float(x) for x in p.split(",")] for p in shape.get("points", "").split()], axis=0))
     return np.array(found)

@@ -52,6 +52,7 @@ REFUSED = [
     (("hanging.yaml", PATH, "--units", "furlong"), "not a unit"),
     (("hanging.yaml", PATH, "--x", "joints.pivot.forc"), "did you mean"),
     (("hanging.yaml", PATH, "--with", "bench.csv"), "expected FILE:X:Y"),
+    (("hanging.yaml", PATH, "--with", "none.csv:t:F"), "there is no row of numbers in it"),
     (("hanging.yaml", PATH, "--with", "gone.csv:t:F"), "no such file"),
     (("hanging.yaml", PATH, "--with", ".:t:F"), "this is a folder"),
     (("hanging.yaml", PATH, "--with", "bench.csv:t:G"), "there is no column 'G'"),
@@ -64,6 +65,7 @@ REFUSED = [
 @pytest.fixture
 def files(folder: Path) -> Path:
     (folder / "sectioned.yaml").write_text(SECTIONED)
+    (folder / "none.csv").write_text("t,F\n")
     (folder / "turned.yaml").write_text(TURNED)
     (folder / "pushed.yaml").write_text(PUSHED)
     (folder / "bench.csv").write_text("t [ms],F [kN],w\n0,1,2\n1,2,late\n")

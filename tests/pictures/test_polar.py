@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from tests.shared.command import Heun
+from tests.shared.folders import ROOT
 from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
 
 SPECS = Path(__file__).parents[2] / "specs"
@@ -89,6 +90,23 @@ def test_of_a_motion_that_comes_back_the_last_turn(heun: Heun, folder: Path, way
     assert np.abs(np.hypot(*marks.T) - centripetal).max() < panel.pixel
     assert "joints.main.force: 7.8956" in words and "N all along" in words  # no place of it is the largest
     assert np.abs(np.degrees(np.arctan2(*marks.T[::-1])) % 30.0 - 15.0).min() > 14.5  # of the twelve each at its angle
+
+
+def test_a_small_vector_beside_a_large_one_has_to_come_back_too(heun: Heun, folder: Path) -> None:
+    """A moment of thousandths that grows, beside a force of tens that turns evenly."""
+    growing = "forces: {twist: {type: couple, on: crank, vector: [0.001*t, 0, 0]}}\n"
+    (folder / "growing.yaml").write_text(CRANK.replace("LAW", '"2*pi*t"') + growing)
+    _, words = drawn(heun, "growing.yaml", "polar", "joints.main", "joints.main.moment")
+    assert "the whole run, t = 0 to 3 s" in words
+
+
+def test_rounding_is_a_point(heun: Heun) -> None:
+    """Of what is less than its error the axes reach as far as that."""
+    (panel,), words = drawn(heun, str(ROOT / "specs" / "cardan.yaml"), "polar", "foundation", "--view", "x")
+    (curve,) = panel.lines("foundation.force")
+    assert "foundation.force: ? N all along" in words
+    assert np.hypot(*curve.T).max() < 0.5 * panel.pixel * (panel.right - panel.left)
+    assert panel.x.values(np.array([panel.left]))[0] < 0.0 < panel.x.values(np.array([panel.right]))[0]
 
 
 def test_across_a_slanted_axis(heun: Heun, folder: Path) -> None:

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Sequence
 from itertools import pairwise
 from typing import NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 
@@ -14,9 +11,7 @@ from heuncli.drawing.figure import Figure
 from heuncli.drawing.layout import laid_out
 from heuncli.drawing.picture import svg
 from heuncli.results import Array
-
-SPACE = "{http://www.w3.org/2000/svg}"
-TICK = "middle"
+from tests.shared.plotted import SVG, PlottedPanel, panels_of
 
 
 class DrawnPanel(NamedTuple):
@@ -49,76 +44,25 @@ def panels(figure: Figure) -> list[DrawnPanel]:
 
 
 def read(text: str) -> list[DrawnPanel]:
-    """The panels of an SVG: fields in a frame, axes by the numbers beside their ticks."""
-    shapes = list(ElementTree.fromstring(text))
-    frames = [points(s) for s in shapes if s.tag == f"{SPACE}polyline" and is_frame(s)]
-    across = scale([(float(s.get("x", 0)), s.text or "") for s in shapes if is_tick_across(s, frames)])
-    return [panel(shapes, frame, across) for frame in frames]
+    """The panels of an SVG."""
+    return [_seen(own) for own in panels_of(text)]
 
 
-def panel(shapes: Sequence[ElementTree.Element], frame: Array, across: tuple[float, float]) -> DrawnPanel:
-    """The panel in a frame."""
-    (left, top), (right, bottom) = frame.min(axis=0), frame.max(axis=0)
-    texts = [(float(s.get("x", 0)), float(s.get("y", 0)), s.text or "", s) for s in shapes if s.tag == f"{SPACE}text"]
-    beside = [(x, y, text, s) for x, y, text, s in texts if x < left and top - 5 <= y <= bottom + 5]
-    up = scale([(y - 4.0, text) for _, y, text, s in beside if s.get("anchor", s.get("text-anchor")) == "end"])
-    (label,) = [text for _, _, text, s in beside if s.get("transform")] or [""]
-
-    def turned(at: Array) -> Array:
-        return np.column_stack([across[0] + across[1] * at[:, 0], up[0] + up[1] * at[:, 1]])
-
+def _seen(own: PlottedPanel) -> DrawnPanel:
+    """All that is in a panel, in the units of its axes."""
+    assert own.x.even and own.y.even, "an axis is not divided evenly"
     curves: dict[str, list[Array]] = {}
     areas: dict[str, Array] = {}
-    for shape in shapes:
-        name = shape.findtext(f"{SPACE}title") or ""
-        if shape.tag not in (f"{SPACE}polyline", f"{SPACE}polygon"):
-            continue
-        at = points(shape)
-        if not (top - 1 <= at[:, 1].min() and at[:, 1].max() <= bottom + 1 and left - 1 <= at[:, 0].min()):
-            continue
-        if shape.tag == f"{SPACE}polygon" and name:
-            areas[name] = turned(at)
-        elif name:
-            curves.setdefault(name, []).append(turned(at))
-    circles = [s for s in shapes if s.tag == f"{SPACE}circle" and top <= float(s.get("cy", 0)) <= bottom]
-    marks = np.array([[float(s.get("cx", 0)), float(s.get("cy", 0))] for s in circles]).reshape(-1, 2)
-    inside = [(x, y, text) for x, y, text, _ in texts if left <= x <= right and top <= y <= bottom]
-    return DrawnPanel(label, curves, areas, turned(marks), inside, abs(up[1]), abs(across[1]))
-
-
-def points(shape: ElementTree.Element) -> Array:
-    """The points of a line or an outline in pixels, (n, 2)."""
-    return np.array([[float(x) for x in pair.split(",")] for pair in shape.get("points", "").split()])
-
-
-def is_frame(shape: ElementTree.Element) -> bool:
-    """Whether a line is the frame of a panel: a closed rectangle without a name."""
-    at = points(shape)
-    return len(at) == 5 and bool((at[0] == at[-1]).all()) and not len(shape)
-
-
-def is_tick_across(shape: ElementTree.Element, frames: Sequence[Array]) -> bool:
-    """Whether a text is a number below the last panel."""
-    below = max(float(frame[:, 1].max()) for frame in frames)
-    own = shape.tag == f"{SPACE}text" and shape.get("text-anchor") == TICK
-    return own and abs(float(shape.get("y", 0)) - below - 16.0) < 1.0 and is_number(shape.text or "")
-
-
-def scale(ticks: Sequence[tuple[float, str]]) -> tuple[float, float]:
-    """The line a + b p through what ticks at pixels p say; of one alone it is taken as 1 a pixel."""
-    told = [(at, float(text)) for at, text in ticks if is_number(text)]
-    if len(told) < 2:
-        at, value = told[0] if told else (0.0, 0.0)
-        return value + at, -1.0
-    b, a = np.polyfit([at for at, _ in told], [value for _, value in told], 1)
-    for at, value in told:
-        assert abs(a + b * at - value) <= 0.05 * abs(b), "an axis is not divided evenly"
-    return float(a), float(b)
-
-
-def is_number(text: str) -> bool:
-    """Whether a tick's text is a number."""
-    return re.fullmatch(r"-?\d+(\.\d+)?(e-?\d+)?", text) is not None
+    for name, points in own.named("polyline"):
+        curves.setdefault(name, []).append(points)
+    for name, points in own.named("polygon"):
+        areas[name] = points
+    marks = np.concatenate([own.spots(filled=filled) for filled in (True, False)])
+    texts = [(float(e.get("x", 0)), float(e.get("y", 0)), e) for e in own.root.iter(f"{SVG}text")]
+    inside = [(x, y, e.text or "") for x, y, e in texts if own.left <= x <= own.right and own.top <= y <= own.bottom]
+    beside = [e.text or "" for x, y, e in texts if x < own.left and own.top <= y <= own.bottom and e.get("transform")]
+    (label,) = beside or [""]
+    return DrawnPanel(label, curves, areas, marks, inside, abs(own.y.step), abs(own.x.step))
 
 
 def heights(curve: Array, s: Array) -> Array:

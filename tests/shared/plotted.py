@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as tree
+from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
 
 from heuncli.results import Array
 
+PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
 SVG = "{http://www.w3.org/2000/svg}"
-BELOW, BESIDE, BASE = (
-    16.0,
-    7.0,
-    4.0,
-)  # pixels: from a frame to the numbers under it and to those at its left; their base
+BELOW, BESIDE, BASE = 16.0, 7.0, 4.0  # pixels: from a frame to the numbers under it, to those at its left; their base
 
 
 class PlottedAxis(NamedTuple):
-    """Numbers along an axis: a value is `begin + step * pixel`."""
+    """Numbers along an axis: a value is `begin + step * pixel`; even: whether all numbers stand so."""
 
     begin: float
     step: float
+    even: bool = True
 
     def values(self, pixels: Array) -> Array:
         """What stands at some pixels."""
@@ -39,15 +38,20 @@ class PlottedPanel(NamedTuple):
     y: PlottedAxis
     root: tree.Element
 
+    def named(self, tag: str) -> Iterator[tuple[str, Array]]:
+        """The polylines or polygons in the frame that have a name, each with its points (n, 2), in the axes' units."""
+        for element in self.root.iter(f"{SVG}{tag}"):
+            name = element.findtext(f"{SVG}title")
+            if name and self.holds(points := points_of(element)):
+                yield name, self.in_units(points)
+
     def lines(self, name: str) -> list[Array]:
         """The polylines of a name, (n, 2) each, in the units of the axes."""
-        found = [e for e in self.root.iter(f"{SVG}polyline") if e.findtext(f"{SVG}title") == name]
-        return [self.in_units(points) for e in found if self.holds(points := points_of(e))]
+        return [points for own, points in self.named("polyline") if own == name]
 
     def areas(self, name: str) -> list[Array]:
         """The filled polygons of a name, (n, 2) each, in the units of the axes."""
-        found = [e for e in self.root.iter(f"{SVG}polygon") if e.findtext(f"{SVG}title") == name]
-        return [self.in_units(points) for e in found if self.holds(points := points_of(e))]
+        return [points for own, points in self.named("polygon") if own == name]
 
     def spots(self, *, filled: bool) -> Array:
         """The middles of round marks, (n, 2), in the units of the axes."""
@@ -80,15 +84,13 @@ def points_of(element: tree.Element) -> Array:
 def panels_of(svg: str, *, equal: bool = False) -> list[PlottedPanel]:
     """The panels of a drawing, from above; equal: of both axes alike, so that one number tells the one across."""
     root = tree.fromstring(svg.encode())
-    frames = [points for e in root.iter(f"{SVG}polyline") if is_frame(points := points_of(e))]
+    frames = [points for e in root.iter(f"{SVG}polyline") if not len(e) and is_frame(points := points_of(e))]
     found = []
     for points in frames:
         (left, top), (right, bottom) = points.min(axis=0), points.max(axis=0)
         under = numbers(root, "middle", lambda x, y, at=bottom: (x, abs(y - at - BELOW) < 0.1))
         beside = numbers(root, "end", lambda x, y, at=left: (y - BASE, abs(x - at + BESIDE) < 0.1))
         upward = {place: value for place, value in beside.items() if top - 1.0 <= place <= bottom + 1.0}
-        if not upward and not under:
-            continue  # a body that is drawn as a box, and no panel
         y = axis(upward)
         x = axis(under) if not equal or len(under) > 1 else through(under, -y.step)
         found.append(PlottedPanel(left, top, right, bottom, x, y, root))
@@ -104,13 +106,13 @@ def is_frame(points: Array) -> bool:
     return bool((steps.min(axis=1) == 0.0).all() and (steps.max(axis=1) > 10.0).all())
 
 
-def numbers(root: tree.Element, anchor: str, place_of: object) -> dict[float, float]:
+def numbers(root: tree.Element, anchor: str, place_of: PlaceOf) -> dict[float, float]:
     """The numbers written along an axis by their places [pixels]."""
     found = {}
     for e in root.iter(f"{SVG}text"):
         if e.get("text-anchor") != anchor or e.get("transform"):
             continue
-        place, own = place_of(float(e.get("x", "nan")), float(e.get("y", "nan")))  # type: ignore[operator]
+        place, own = place_of(float(e.get("x", "nan")), float(e.get("y", "nan")))
         try:
             if own:
                 found[place] = float(e.text or "")
@@ -125,7 +127,8 @@ def axis(found: dict[float, float]) -> PlottedAxis:
         return PlottedAxis(float("nan"), float("nan"))
     places, values = np.array(list(found)), np.array(list(found.values()))
     step, begin = np.polyfit(places, values, 1)
-    return PlottedAxis(float(begin), float(step))
+    even = np.abs(begin + step * places - values).max() <= 0.05 * abs(step)
+    return PlottedAxis(float(begin), float(step), bool(even))
 
 
 def through(found: dict[float, float], step: float) -> PlottedAxis:

@@ -2,22 +2,16 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from heuncli.cli import measure
-from heuncli.cli.entry import UsageError
-from heuncli.cli.solving import instants
 from heuncli.cli.units import units
 from heuncli.cli.views import require_view
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solution, specs_of
+from heuncli.commands.plot.sources import instants_before_horizon, solution, specs_of
 from heuncli.drawing.figure import Figure
-from heuncli.errors import Problem
-from heuncli.pictures.courses import Pictured
+from heuncli.pictures.courses import title_of
 from heuncli.pictures.scenes import scene
 from heuncli.pictures.traces import CENTER
-from heuncli.results import Array
 from heuncli.study.ask.measure import MeasureRequest
 
 REPORTS = ("bodies", "joints", "impulses")  # of the results: where all of it stands, and what acts
@@ -33,30 +27,18 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
         measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
     sources = [solution(name, spec, [*paths, *REPORTS], request) for name, spec in specs]
     shown = units(request.units)
-    figures = [scene(source, shown, _at(source, request), request.view, names) for source in sources]
+    ats = [None if request.at is None else instants_before_horizon(source, request.at) for source in sources]
+    figures = [scene(source, shown, at, request.view, names) for source, at in zip(sources, ats, strict=True)]
     if len(figures) == 1:
         return figures[0]
     several = list(zip(sources, figures, strict=True))
     words = [f"{source.name}: {sentence}" for source, each in several for sentence in each.words]
     panels = [panel for each in figures for panel in each.panels]
     notes = [f"{source.name}: {note}" for source, each in several for note in each.notes]
-    return Figure(figures[0].title, words, panels, (), notes)
+    return Figure(title_of(sources), words, panels, (), notes)
 
 
 def _path(name: str) -> str:
     """The path in the results of a point that is traced."""
     body, _, point = name.partition(".")
     return f"bodies.{body}.{CENTER}" if point == CENTER else f"points.{name}.position"
-
-
-def _at(source: Pictured, request: PlotRequest) -> Array | None:
-    """The instants that are asked for. Raises UsageError, of those beyond the horizon, too."""
-    if request.at is None:
-        return None
-    results = source.study.results
-    times = instants(request.at, results.time)
-    horizon = results.accuracy.get("horizon")
-    if horizon is not None and times[-1] >= horizon:
-        message = f"--at {times[-1]:.6g}: nothing is claimed from the horizon on, t = {horizon:.6g} s"
-        raise UsageError(Problem("bad-option", message, hint="an instant before it"))
-    return np.asarray(times)

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from heuncli.cli.entry import UsageError
-from heuncli.cli.solving import instants
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solution, specs_of
+from heuncli.commands.plot.sources import instants_before_horizon, solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Problem, SpecError
 from heuncli.nearest import nearest
@@ -67,11 +66,5 @@ def _asked_instants(sources: Sequence[Pictured], words: str | None) -> list[floa
         return None
     found: list[float] = []
     for source in sources:
-        results = source.study.results
-        found = instants(words, results.time).tolist()
-        horizon = results.accuracy.get("horizon")
-        late = [t for t in found if horizon is not None and t >= horizon]
-        if late:
-            message = f"--at {late[0]:.6g}: from t = {horizon:.6g} s on nothing is claimed, and so nothing is drawn"
-            raise UsageError(Problem("bad-option", message, hint="an earlier instant"))
+        found = instants_before_horizon(source, words).tolist()
     return found

@@ -5,34 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from pathlib import PurePath
 
-from heuncli.cli import alarm, measure
+from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
+from heuncli.cli.solving import choice, instants, overrides, require_cases, solver_options, warn
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.errors import Problem
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.pictures.courses import Pictured
 from heuncli.records import replace
+from heuncli.results import Array
 from heuncli.run_places import words_of
 from heuncli.spec.load import load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.reading import STANDARD_INPUT
-from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
-
-
-def solved(files: Sequence[str], paths: Sequence[str], request: PlotRequest) -> list[Pictured]:
-    """The runs, in the order of the files and of their cases; what they are warned of is told."""
-    specs = specs_of(files, request)
-    asked = [MeasureRequest("", path) for path in paths]
-    for _, spec in specs:
-        measure.check(asked, spec, "heun plot")
-    return [solution(name, spec, paths, request) for name, spec in specs]
 
 
 def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
@@ -60,9 +51,21 @@ def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Sp
         for case, spec in cases.items():
             yield f"{name} {case}".lstrip(), spec
     else:
-        for case in request.case.split(","):
+        for case in map(str.strip, request.case.split(",")):
             yield f"{name} {case}".lstrip(), load(file, overrides=given, checking=False, case=case)
     require_other_file(request.output, [file])
+
+
+def instants_before_horizon(source: Pictured, words: str) -> Array:
+    """The instants of --at in a run, (n,) ascending. Raises UsageError, of those from the horizon on, too."""
+    results = source.study.results
+    found = instants(words, results.time)
+    horizon = results.accuracy.get("horizon")
+    if horizon is not None and found[-1] >= horizon:
+        late = found[found >= horizon][0]
+        message = f"--at {late:.6g}: from t = {horizon:.6g} s on nothing is claimed, and so nothing is drawn"
+        raise UsageError(Problem("bad-option", message, hint="an earlier instant"))
+    return found
 
 
 def require_joints(paths: Sequence[str], request: PlotRequest) -> None:

@@ -12,10 +12,12 @@ from pathlib import PurePath
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.cli.entry import UsageError
 from heuncli.errors import Finding, Problem
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.swept import SweptNumbers, SweptTable, SweptVariable
+from heuncli.results import Array
 from heuncli.spec.reading import read_bytes
 from heuncli.sweeps.columns import CODE, NUMBER, REASON, WORDS, parameters_of
 from heuncli.sweeps.rows import SweepHead, SweptRow
@@ -26,6 +28,7 @@ from heuncli.variants.plans import Plan
 
 ASKED_BY = "heun plot"
 LARGEST = 1_000_000_000  # bytes
+LARGEST_NUMBER = tolerances.MOST_MAGNITUDE**2  # of a product of two that are computed with
 ERROR, AT = " error", " at [s]"  # behind a measure, the heads of its other columns
 WRITES_ONE = "heun sweep SPEC ... -o sweep.csv writes one"
 NO_NUMBER = Measured(None)
@@ -114,15 +117,26 @@ def _of_csv(path: str) -> SweptTable:
         name, unit = _named(columns.heads[k].replace(" (parameter)", ""))
         cells = [_number(cell) for cell in by_column[k]]
         numbers = not any(map(math.isnan, cells))
+        _require_in_range(path, columns.heads[k], np.array(cells))
         variables.append(_variable(name, unit, cells if numbers else list(by_column[k])))
     measures = []
     for k in columns.measures:
         text, unit = _named(columns.heads[k])
         values, errors = (np.array([_number(cell) for cell in by_column[k + j]]) for j in (0, 1))
+        _require_in_range(path, columns.heads[k], values, errors)
         lost = tuple(_lost(columns.heads[k], *why) for why in zip(values, codes, reasons, strict=True))
         measures.append(SweptNumbers(text, unit, values, np.nan_to_num(errors), lost))
     origin = f"{path}: {len(table):,} variants"
     return SweptTable(PurePath(path).name, origin, tuple(variables), tuple(measures), tuple(codes), None)
+
+
+def _require_in_range(path: str, head: str, *columns: Array) -> None:
+    """Raise UsageError for numbers so large that no run has them, and that no axis holds."""
+    for values in columns:
+        beyond = np.isfinite(values) & (np.abs(values) > LARGEST_NUMBER)
+        if beyond.any():
+            row = int(beyond.argmax())
+            raise _no_sweep(path, f"row {row + 2}: {head} is {values[row]:g}")
 
 
 def _rows(path: str) -> Iterator[list[str]]:

@@ -17,6 +17,7 @@ from heuncli.commands.show.request import ShowRequest
 from heuncli.errors import LimitError, Problem
 from heuncli.page.frames import MOST
 from heuncli.page.moving_page import moving_page
+from heuncli.pictures.courses import require_claimed
 from heuncli.records import replace
 from heuncli.report.page import TABLE_DEFAULT
 from heuncli.spec.load import load
@@ -34,6 +35,7 @@ REPORTS = TABLE_DEFAULT | {"motion"}
 def main(request: ShowRequest) -> int:
     """Run the command; returns the exit code."""
     output, glb = _output(request), _glb(request)
+    _require_page(request)
     outputs = [(name, option) for name, option in ((output, "-o"), (glb, "--glb")) if name is not None]
     for name, option in outputs:
         require_other_file(name, [request.spec], option)
@@ -45,6 +47,7 @@ def main(request: ShowRequest) -> int:
     options = replace(solver_options(request), wanted=REPORTS, time_limit=alarm.remaining())
     with placed(spec):
         study = solve(spec, options)
+        require_claimed(study)
         page = moving_page(study, shown, most) if output is not None else ""
         moving = moving_glb(study) if glb is not None else b""
     warn(spec, study.results, request.quiet, later=study.later_warnings)
@@ -83,6 +86,15 @@ def _glb(request: ShowRequest) -> str | None:
     if same_file("/dev/stdout" if request.output == STDOUT else request.output, name):
         raise UsageError(Problem("bad-option", f"--glb {name}: that is where the page goes", hint="name another file"))
     return name
+
+
+def _require_page(request: ShowRequest) -> None:
+    """Raise UsageError for options of the page where none is written."""
+    given = [("--frames", request.frames), ("--units", request.units)]
+    idle = [option for option, value in given if value is not None] if request.output is None else []
+    if idle:
+        message = f"{', '.join(idle)}: of the page, and none is written; a file of moving bodies is in SI"
+        raise UsageError(Problem("bad-option", message, hint="leave it out, or say where the page goes: -o x.html"))
 
 
 def _most(frames: int | None) -> int:

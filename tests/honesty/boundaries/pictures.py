@@ -1,0 +1,89 @@
+"""What pictures say: that a number stays as it is, that a plane holds a vector, that a motion comes back, what acts."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+
+from heuncli.pictures.courses import varies
+from heuncli.pictures.planes import plane_of, plane_seen_along
+from heuncli.pictures.polar_words import notes_of
+from heuncli.pictures.pulls import pulls_of
+from heuncli.pictures.refusals import NotDrawable
+from heuncli.pictures.tips import Largest, TipCurve
+from heuncli.pictures.turning import LookedAt, TurningRun, turning_of
+from heuncli.report.table_units import Units
+from heuncli.results import Array
+from heuncli.study.ask.study import Study
+from heuncli.tolerances import EPS
+from tests.honesty.boundaries.part import Part, Row
+from tests.honesty.boundaries.scenes import WEIGHT, bar
+from tests.shared.scenes import near, study
+
+ANGLE = "coordinates.pivot.angle"
+
+
+@functools.cache
+def turned() -> Study:
+    """A bar that is turned twice, in two seconds."""
+    tail = "drives: {d: {joint: pivot, angle: 2*pi*t}}\nanalysis: {duration: 2, samples: 9}"
+    return study(bar(tail=tail, kind="pin, axis: [1, 0, 0]"))
+
+
+def told_once(x: float) -> str:
+    """A number between 1 - x and 1."""
+    return "varies" if varies(1.0 - x, 1.0, 0.0) else "throughout"
+
+
+def out_of_the_plane(x: float) -> str:
+    """Two vectors that stand x of the larger one out of the plane of x and y."""
+    vectors = np.array([[1.0, 0.5, x], [-0.3, 0.8, -x]])
+    try:
+        plane = plane_of(turned(), "foundation.force", vectors, np.array([0.0, 2.0]), "world", "")
+    except NotDrawable:
+        return "no plane"
+    return "".join(plane.names)
+
+
+def across(x: float) -> str:
+    """A vector of 1 N in the plane and x N across it."""
+    vectors = np.array([[1.0, 0.0, x], [0.0, 0.5, 0.0]])
+    whole = TurningRun(np.array([0.0, 2.0]), "", np.zeros(0), 0)
+    curve = TipCurve("F", "foundation.force", "N", 0, turned(), whole, vectors, plane_seen_along("z"))
+    notes = notes_of(curve, Largest(1.0, 0.0, 1.0, 0.0, 0.0, steady=False), Units())
+    return "told" if any("across the plane" in note for note in notes) else "silent"
+
+
+def from_turn_to_turn(x: float) -> str:
+    """A vector of 1 N that grows by x N a turn."""
+
+    def growing(times: Array) -> Array:
+        return (1.0 + x * times)[:, None, None] * np.array([[1.0, 0.0, 0.0]])
+
+    run = turned()
+    found = turning_of(run, run.results.time, [ANGLE], LookedAt(growing, np.zeros(1)))
+    return "the last turn" if found.turns == 1 else "the whole run"
+
+
+def carried(x: float) -> str:
+    """A bar whose weight, but for x of it, a distributed load carries."""
+    load = f"{{type: distributed, on: bar, from: top, to: end, vector: [0, 0, {WEIGHT * (1.0 - x)!r}]}}"
+    pulls = pulls_of(study(bar(tail=f"forces: {{f: {load}}}", kind="weld")), 0.0).all
+    if not pulls:
+        return "nothing"
+    (pull,) = pulls
+    near(pull.vector, [0.0, 0.0, x * WEIGHT], 4.0 * EPS * WEIGHT, 1.0)
+    return pull.name
+
+
+PART = Part(
+    headings=("pictures",),
+    rows=(
+        Row("THROUGHOUT", told_once, "throughout", "varies"),
+        Row("IN_ONE_PLANE", out_of_the_plane, "xy", "no plane"),
+        Row("TOLD_ACROSS", across, "silent", "told"),
+        Row("COMES_ROUND", from_turn_to_turn, "the last turn", "the whole run"),
+        Row("NOTHING_ACTS", carried, "nothing", "pivot"),
+    ),
+)
