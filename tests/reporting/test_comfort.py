@@ -136,3 +136,13 @@ def test_the_one_scalar_beside_a_force_hides_no_other(heun: Heun, folder: Path) 
     read = read_of(heun, folder, GUIDED)
     assert ["radial", "N", "5.00000"] in [row[:3] for row in read.rows]
     assert ["drive", "N", "1.00000"] in [row[:3] for row in read.rows]
+
+
+def test_what_is_nothing_at_some_instants_and_open_at_others_keeps_its_line(heun: Heun, folder: Path) -> None:
+    """A rod that is held beside its weld: the moment My of that is 0 where it is known, and open in other poses."""
+    text = (SPECS / "skew_rod.yaml").read_text().partition("\nexpect")[0].replace(
+        "\nsections:", "  beside: {type: rod, from: ground.right, to: rod.tip}\n\nsections:"
+    ) + "\ngravity: [3, 0, -9.81]\nanalysis: {duration: 0.2, samples: 5}\n"  # fmt: skip
+    read = read_of(heun, folder, text)
+    hub = next(k for k, row in enumerate(read.rows) if row[0].startswith("hub"))
+    assert "My*" in [row[0] for row in read.rows[hub : hub + 3]]
