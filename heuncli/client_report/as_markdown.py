@@ -21,7 +21,7 @@ from heuncli.drawing.canvas import Look
 from heuncli.drawing.letters import drawn
 from heuncli.foreign_text import shown
 
-MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~&!$])")  # what means something anywhere in a line
+MARKUP = re.compile(r"([\\`*_{}\[\]<>#|~&!$]|:(?=//)|(?<=www)\.)", re.IGNORECASE)  # what means something anywhere
 BEGINS = re.compile(r"^(\d*)([-+=.)])")  # and at its beginning
 LOOK = Look(100, braille=True, colours=False)
 SIGNS = {"plain": "", "good": "**✓** ", "bad": "**✗** ", "unsure": "**!** "}

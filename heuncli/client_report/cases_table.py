@@ -106,6 +106,11 @@ class WrittenRow(NamedTuple):
         """All that stands for it."""
         return {text for both in self.texts.values() for text in both}
 
+    @property
+    def is_nothing(self) -> bool:
+        """Whether it is 0 throughout; what is open at some instants need not be."""
+        return self.words == {"0"} and all(ends.whole for _, ends in self.found)
+
 
 def _written(of: Reported, group: LoadGroup) -> Iterator[WrittenRow]:
     """The numbers of a group; those of one family and unit share their decimals."""
@@ -126,7 +131,7 @@ def _lines(
 ) -> Iterator[Sequence[ReportCell]]:
     """The lines of a group; what is 0 throughout takes none, what is open throughout one together."""
     written = list(_written(of, group))
-    told = [one for one in written if one.words not in ({"0"}, {OPEN})]
+    told = [one for one in written if not one.is_nothing and one.words != {OPEN}]
     beside = Counter(one.row.vector for one in told if not one.row.even)
     told = [one for one in told if not (one.row.even and one.row.vector and beside[one.row.vector] == 1)]  # nothing new
     for one in told:

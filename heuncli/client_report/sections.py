@@ -55,9 +55,19 @@ def _diagrams(of: Reported, names: list[str]) -> Iterator[Part]:
             continue
         figure = diagrams([Pictured("", run.study)], [name], of.units)._replace(title="")
         case = f", load case {run.name}" if run.name else ""
-        yield Drawing(figure, f"Section {name}{case}: the piece beyond the cut ON the part before it; N > 0 tension")
+        yield Drawing(
+            figure,
+            f"Section {name}{case}{_unclear(of, name)}: the piece beyond the cut ON the part before it; N > 0 tension",
+        )
     if len(runs) > len(most):
         yield Sentence(f"{len(runs) - len(most)} more sections are not drawn here: heun plot SPEC sections.NAME")
+
+
+def _unclear(of: Reported, name: str) -> str:
+    """In which cases loads of a section are open, so that these may govern after all."""
+    lacks = [lacking(of, f"sections.{name}.{quantity}") for quantity in RESULTANTS]
+    cases = [run.told for run in of.runs if any(run.told in own for own in lacks)]
+    return f" (some loads are open in {some(cases)}, which may govern)" if cases and of.has_cases else ""
 
 
 class GoverningCase(NamedTuple):

@@ -26,6 +26,7 @@ from heuncli.scenery.poses import poses_in
 from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
+NOT_SOUGHT = "There are too many loads to seek the largest between the instants of the run: they may be larger there."
 MOST_BLOWS = 12  # whose numbers are listed
 TELLING = ("stiff", "split", "status", "warning")  # lines of a heading that are told at once
 
@@ -40,7 +41,8 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     own, spec = study.results, study.spec
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
-    frames = frames_of(study, peak_times(study, labels, certain), most)
+    peaks = peak_times(study, labels, certain)
+    frames = frames_of(study, peaks.times, most)
     results = results_at(study, frames.times)
     horizon = own.accuracy.get("horizon")
     return {
@@ -48,7 +50,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
         "about": [[label, shown(text)] for label, text in (*heading(own)[1:], ("spec", _digest(own))) if text],
         "version": own.version,
         "file": shown(str(own.spec.get("path", ""))),
-        "told": [*frames.told, *_told(own, horizon)],
+        "told": [*frames.told, *[NOT_SOUGHT] * (not peaks.sought), *_told(own, horizon)],
         "horizon": horizon,
         "count": len(frames.times),
         "time": packed(frames.times),

@@ -16,6 +16,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch, distinct
 
 REPORTS = frozenset({"joints", "foundation", "sections"})
+MOST_SEARCHED = 5_000_000  # numbers to look at
 
 
 class LoadColumn(NamedTuple):
@@ -31,11 +32,18 @@ class LoadColumn(NamedTuple):
     run: str = ""
 
 
-def peak_times(study: Study, labels: Labels, certain: Certainty) -> Array:
+class Peaks(NamedTuple):
+    """When loads are largest (n,) [s]; sought: whether that was searched between the instants of the run, too."""
+
+    times: Array
+    sought: bool
+
+
+def peak_times(study: Study, labels: Labels, certain: Certainty) -> Peaks:
     """The instants at which forces and moments of joints and of the foundation, and loads of sections, are largest."""
     searched = list(_loads(study.results))
     if not searched:
-        return np.zeros(0)
+        return Peaks(np.zeros(0), sought=True)
     ordered = [load for load in searched if not load.run] + [load for load in searched if load.run]
     own = [load for load in ordered if not load.run]
     errors = np.array([_error(load, labels, certain) for load in ordered])
@@ -43,10 +51,10 @@ def peak_times(study: Study, labels: Labels, certain: Certainty) -> Array:
         _columns, [[k] for k in range(len(own))], errors, np.array([load.square for load in ordered]),
         _along if len(own) < len(ordered) else None,
     )  # fmt: skip
-    found = study.extremes(search, REPORTS, whole=True)
+    found = study.extremes(search, REPORTS, whole=True, most=MOST_SEARCHED)
     lowest = np.where([load.square for load in ordered], np.nan, found.low_at)  # of a size the largest alone
     times = np.concatenate([lowest, found.high_at])
-    return np.asarray(distinct(times[np.isfinite(times)]))
+    return Peaks(np.asarray(distinct(times[np.isfinite(times)])), found.searched or study.of_one_instant)
 
 
 def _loads(results: Results) -> Iterator[LoadColumn]:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from tests.shared.command import Heun
+from tests.shared.folders import SPECS
 from tests.shared.page_reader import PageReader
 
 BEAM = """\
@@ -99,8 +100,18 @@ def test_strength_within_the_stated_error_is_no_comfort(heun: Heun, folder: Path
 def test_extremes_of_samples_alone_are_told_first(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     said = "extremes are those of 21 instants alone"
     assert said not in read_of(heun, folder, SWING).by_tag["header"][0]
-    monkeypatch.setattr("heuncli.telling.keep.MOST_SEARCHED", 0)
+    monkeypatch.setattr("heuncli.commands.reporting.cases.MOST_SEARCHED", 0)
     assert said in read_of(heun, folder, SWING).by_tag["header"][0]
+
+
+def test_few_samples_of_many_turns_hide_no_load(heun: Heun, folder: Path) -> None:
+    """Seven cycles of an engine, told at eight instants: more than a million numbers to look at."""
+    text = (SPECS / "engine.yaml").read_text().partition("\nexpect")[0]
+    text = re.sub("(?m)^analysis:.*", "analysis: {duration: 7*cycle, samples: 8}", text)
+    (folder / "engine.csv").write_bytes((SPECS / "engine.csv").read_bytes())
+    header = read_of(heun, folder, text).by_tag["header"][0]
+    measured = json.loads(heun("run", "own.yaml", "--measure", "max joints.wrist.force", "--format", "json").stdout)
+    assert f"Largest joint force: {measured['value']:.1f} N" in header
 
 
 def test_checks_of_other_cases_are_not_taken_for_none(heun: Heun, folder: Path) -> None:
@@ -125,3 +136,13 @@ def test_the_one_scalar_beside_a_force_hides_no_other(heun: Heun, folder: Path) 
     read = read_of(heun, folder, GUIDED)
     assert ["radial", "N", "5.00000"] in [row[:3] for row in read.rows]
     assert ["drive", "N", "1.00000"] in [row[:3] for row in read.rows]
+
+
+def test_what_is_nothing_at_some_instants_and_open_at_others_keeps_its_line(heun: Heun, folder: Path) -> None:
+    """A rod that is held beside its weld: the moment My of that is 0 where it is known, and open in other poses."""
+    text = (SPECS / "skew_rod.yaml").read_text().partition("\nexpect")[0].replace(
+        "\nsections:", "  beside: {type: rod, from: ground.right, to: rod.tip}\n\nsections:"
+    ) + "\ngravity: [3, 0, -9.81]\nanalysis: {duration: 0.2, samples: 5}\n"  # fmt: skip
+    read = read_of(heun, folder, text)
+    hub = next(k for k, row in enumerate(read.rows) if row[0].startswith("hub"))
+    assert "My*" in [row[0] for row in read.rows[hub : hub + 3]]

@@ -121,3 +121,13 @@ def test_largest_loads_without_room_are_told(heun: Heun, folder: Path) -> None:
         assert heun("show", spec, "-o", "page.html", "--frames", frames, "-q").returncode == 0
         said = data_of((folder / "page.html").read_text())["told"]
         assert any("found no room in this page" in text for text in said) == told, said
+
+
+def test_loads_that_were_not_sought_between_the_instants_are_told(
+    heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for most, told in ((10**6, False), (0, True)):
+        monkeypatch.setattr("heuncli.page.peaks.MOST_SEARCHED", most)
+        assert heun("show", "swinging.yaml", "-o", "page.html").returncode == 0
+        said = data_of((folder / "page.html").read_text())["told"]
+        assert any("too many loads to seek" in text for text in said) == told, said

@@ -205,17 +205,19 @@ class Study:
         return stretched(self.setup, bent)
 
     def extremes(
-        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
-    ) -> Extremes:
+        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None,
+        most: int = MOST_SEARCHED,
+    ) -> Extremes:  # fmt: skip
         """The extremes over the run, before its horizon, of the columns made of its results.
 
         wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
-        there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
+        there may be so many columns that a search would outweigh the run: then they are those of the asked instants;
+        most: numbers to look at before that is so.
         times: of these instants alone.
         """
         between = times is None
         times = self.search_times if times is None else times
-        if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
+        if whole and len(searched.errors) * len(times) > most:
             times, between = self.results.time, False
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
