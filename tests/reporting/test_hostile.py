@@ -73,7 +73,7 @@ def test_markdown_shows_and_never_interprets(heun: Heun, folder: Path) -> None:
         "code",
     }
     assert not read.links
-    assert not re.search(r"(?i)(?<!\\)://|www\.", text.partition("## 1 ")[0])  # which some readers of markdown make links of
+    assert not re.search(r"(?i)(?<!\\)://|www\.", text.partition("## 1 ")[0])  # else links to some
     assert read.by_tag["h1"] == [shown(HOSTILE).replace("  ", " ")]
     assert sum(shown(HOSTILE) in cell for row in read.rows for cell in row) == 4
     assert any("alert(2)" in text for text in read.by_tag["code"])
