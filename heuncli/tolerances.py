@@ -193,6 +193,7 @@ THROUGHOUT = 1e-9  # of its size: what varies by less is told once; typed with t
 IN_ONE_PLANE = 1e-9  # of the largest vector of a run: components across a plane that turned axes and steps leave
 TOLD_ACROSS = 1e-6  # of the largest vector in the plane: what else stands across it is told: six digits, a table's
 COMES_ROUND = 2e-3  # of the largest vector: a pixel of a picture; turns that differ by less are drawn as one
+TORN = 1.57  # rad, a quarter turn: farther apart two instants do not show how a body turns from one to the other
 NOTHING_ACTS = 100.0 * EPS  # of what forces are summed from: rounding of the sum, which has no direction to be drawn
 
 # -- rest

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from heuncli.client_report.extremes import governing
 from heuncli.client_report.parts import Drawing, Part
 from heuncli.client_report.reported import Reported, ReportedRun
-from heuncli.drawing.figure import Figure
+from heuncli.drawing.figure import Figure, over_one_axis
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.histories import history
 from heuncli.telling.envelopes import Bound
@@ -43,11 +43,10 @@ def _figure(of: Reported, runs: Sequence[ReportedRun], paths: Sequence[str]) -> 
     sources = [Pictured(name, run.study) for name, run in zip(names, runs, strict=True)]
     figures = [history(sources, [path], of.units) for path in paths]
     panels = [figure.panels[0]._replace(title=path) for figure, path in zip(figures, paths, strict=True)]
-    above = [panel._replace(x=panel.x._replace(label="")) for panel in panels[:-1]]
     notes = dict.fromkeys(note for figure in figures for note in figure.notes)
     pens = [pen for _, pen in figures[0].legend]
     legend = list(zip(names, pens, strict=True)) if len(runs) > 1 else []
-    return Figure("", (), [*above, panels[-1]], legend, list(notes))
+    return Figure("", (), over_one_axis(panels), legend, list(notes))
 
 
 def _chosen(of: Reported) -> Iterator[tuple[str, str]]:

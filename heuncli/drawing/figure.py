@@ -7,6 +7,7 @@ drawing/layout.py and drawing/letters.py. A number that is not known (nan) is dr
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import log
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -197,8 +198,6 @@ class Scaling(NamedTuple):
     def at(self, value: float) -> float:
         """Where a value stands, 0 to 1; beyond the ends beyond these."""
         if self.logarithmic:
-            from math import log
-
             return (log(value) - log(self.low)) / (log(self.high) - log(self.low))
         return (value - self.low) / (self.high - self.low)
 
@@ -218,6 +217,11 @@ class Panel(NamedTuple):
     bare: bool = False
     title: str = ""
     layered: bool = False
+
+
+def over_one_axis(panels: Sequence[Panel]) -> list[Panel]:
+    """Panels under each other whose axes across are one, which the last of them names."""
+    return [*(panel._replace(x=panel.x._replace(label="")) for panel in panels[:-1]), *panels[-1:]]
 
 
 class Figure(NamedTuple):

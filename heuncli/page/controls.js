@@ -3,7 +3,7 @@
 import { coursesOf, peakOf } from "./courses.js";
 import { instant } from "./digits.js";
 import { by, fill, made } from "./elements.js";
-import { listenToPointers, viewKey } from "./pointing.js";
+import { ZOOM, listenToPointers, viewKey } from "./pointing.js";
 import { SPEEDS, speedFor } from "./player.js";
 import { arrowChoices } from "./wrenches.js";
 
@@ -16,7 +16,6 @@ const LOOKS = [
 const MANY_ARROWS = 40;
 const MANY_NAMES = 7;
 const MOST_BUTTONS = 8;
-const STEP = 1.15;
 const TRIED = 12;
 const SIZES = 1.2; // by how much a step of the arrow size lengthens
 
@@ -100,8 +99,8 @@ export function listenToView(view, player, changed) {
     }),
   );
   act("view-oblique", () => view.begin());
-  act("closer", () => view.magnify(STEP));
-  act("farther", () => view.magnify(1 / STEP));
+  act("closer", () => view.magnify(ZOOM));
+  act("farther", () => view.magnify(1 / ZOOM));
   const frames = player.time.length;
   const jumps = {
     " ": () => player.toggle(),

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.integration.segments import limits_of
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices, Results
@@ -61,7 +62,7 @@ def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
         even = _filled(study, asked, room)
     found = np.asarray(distinct(np.concatenate([even, beside])))
     turned = float(turned_between(study.setup, study.history, found).max(initial=0.0))
-    if turned > math.pi / 2.0:
+    if turned > tolerances.TORN:
         told.append(
             f"Between two frames a body turns up to {math.degrees(turned):.0f}°: only the frames show where it is."
         )

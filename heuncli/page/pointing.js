@@ -3,7 +3,7 @@
 const TURN = 0.008; // rad a pixel
 const KEY_TURN = 0.1; // rad a key
 const KEY_SHIFT = 24; // pixels a key
-const STEP = 1.15; // of a zoom
+export const ZOOM = 1.15; // of one step
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
 /**
@@ -58,8 +58,8 @@ export function viewKey(event, view) {
   const way = ARROWS[event.key];
   if (way && event.shiftKey) view.move(KEY_SHIFT * way[0], KEY_SHIFT * way[1]);
   else if (way) view.turn(KEY_TURN * way[0], -KEY_TURN * way[1]);
-  else if (event.key === "+" || event.key === "=") view.magnify(STEP);
-  else if (event.key === "-") view.magnify(1 / STEP);
+  else if (event.key === "+" || event.key === "=") view.magnify(ZOOM);
+  else if (event.key === "-") view.magnify(1 / ZOOM);
   else if (event.key === "0") view.begin();
   else return false;
   return true;

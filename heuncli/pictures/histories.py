@@ -7,7 +7,19 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.drawing.figure import HEIGHT, Band, Blank, Figure, Item, Panel, Scaling, Spot, Trace, Upright
+from heuncli.drawing.figure import (
+    HEIGHT,
+    Band,
+    Blank,
+    Figure,
+    Item,
+    Panel,
+    Scaling,
+    Spot,
+    Trace,
+    Upright,
+    over_one_axis,
+)
 from heuncli.drawing.ticks import ends, near_zero, short
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.courses import (
@@ -95,12 +107,11 @@ def history(
         words = marks if not panels else [Upright(mark.x, "") for mark in marks]
         points = [item for pen, each in here for item in seen(each, pen, across.size, size)]
         items = [*words, *_blanks(sources, own, x, across), *points, *_curves(own, y, size, across, height)]
-        panels.append(Panel(x._replace(label=""), y, tuple(items), height, equal))
-    panels[-1] = panels[-1]._replace(x=x)
+        panels.append(Panel(x, y, tuple(items), height, equal))
     return Figure(
         title_of(sources),
         [sentence for source in sources for sentence in _words(source)],
-        panels,
+        over_one_axis(panels),
         [(each.name, each.pen) for each in drawn],
         [*_notes(drawn, panels), *notes],
         [(each.name, len(drawn) + k, "square") for k, each in enumerate(measured)],

@@ -11,7 +11,7 @@ from itertools import product
 
 import numpy as np
 
-from heuncli.drawing.figure import Band, Bars, Cells, Figure, Item, Panel, Scaling, Spot, Strokes, Trace
+from heuncli.drawing.figure import Band, Bars, Cells, Figure, Item, Panel, Scaling, Spot, Strokes, Trace, over_one_axis
 from heuncli.drawing.pens import PENS
 from heuncli.pictures.certain import certain
 from heuncli.pictures.error_bands import is_seen
@@ -79,7 +79,7 @@ def _curves(own: PickedTable, units: Units) -> Drawn:
             items += _points(across, measure, size, order, number, marked=len(groups) == 1)
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
     legend = [(name, number) for number, (name, _) in enumerate(groups) if name]
-    return _named_below(panels), legend, [x.note] if x.note else []
+    return over_one_axis(panels), legend, [x.note] if x.note else []
 
 
 def _across(own: PickedTable) -> tuple[SweptVariable, list[SweptVariable]]:
@@ -160,7 +160,7 @@ def _bars(own: PickedTable, units: Units) -> Drawn:
             if np.isfinite(b) and len(values) <= NAMES_MOST
         ]
         panels.append(Panel(x.scaling, y, tuple(items), title=measure.text))
-    return _named_below(panels), [], [x.note] if x.note else []
+    return over_one_axis(panels), [], [x.note] if x.note else []
 
 
 def _fields(own: PickedTable, units: Units) -> Drawn:
@@ -229,11 +229,6 @@ def _scatter(own: PickedTable, units: Units) -> Drawn:
         panels.append(Panel(x.scaling, y, spots, title=measure.text))
     notes = [f"every {every}th of {own.table.rows:,} variants is drawn"] if every > 1 else []
     return panels, [], notes + [note for one in chosen if (note := axis_of(one).note)]
-
-
-def _named_below(panels: Sequence[Panel]) -> list[Panel]:
-    """Panels over one axis, of which the last names it."""
-    return [panel._replace(x=panel.x._replace(label="")) for panel in panels[:-1]] + list(panels[-1:])
 
 
 def _counted(table: SweptTable) -> Iterator[str]:

@@ -154,7 +154,10 @@ def test_workers_without_this_heun_are_named_and_not_used(dask: DaskCluster, rec
     ]
     dask.there(4)
     told: list[str] = []
-    assert gathered(there(recipe, plan("m=1,2,3"), dask.address, told)) == here(recipe, plan("m=1,2,3"))
+    for _ in range(5):  # workers that have not yet said what they have when all is solved are not told of
+        assert gathered(there(recipe, plan("m=1,2,3"), dask.address, told)) == here(recipe, plan("m=1,2,3"))
+        if told:
+            break
     reasons = (
         "there is no heun",
         f"heun 0.0.1 there, {VERSION} here",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from heuncli import tolerances
 from heuncli.page.geometry import looks_of
 from heuncli.pictures.courses import instants
 from heuncli.scenery.gltf import binary
@@ -11,7 +12,6 @@ from heuncli.scenery.poses import poses_of, up_of
 from heuncli.study.ask.study import Study
 from heuncli.study.search.instants import turned_between
 
-TORN = math.pi / 2.0  # rad: beyond, what goes the shortest way between two instants no longer follows a body
 TOLD = "--glb: between two of its instants a body turns up to {:.0f}°; what is shown between them is not the motion"
 
 
@@ -20,7 +20,7 @@ def moving_glb(study: Study) -> bytes:
     times = instants(study)
     if not study.of_one_instant and len(times) > 1:
         turned = float(turned_between(study.setup, study.history, times).max(initial=0.0))
-        if turned > TORN:
+        if turned > tolerances.TORN:
             study.later_warnings[TOLD.format(math.degrees(turned))] = None
     poses = poses_of(study, times)
     return binary(looks_of(study.spec), poses, up_of(study.spec, poses))

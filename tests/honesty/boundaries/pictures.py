@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import functools
+import math
 
 import numpy as np
 
+from heuncli.page.frames import frames_of
 from heuncli.pictures.courses import varies
 from heuncli.pictures.planes import plane_of, plane_seen_along
 from heuncli.pictures.polar_words import notes_of
 from heuncli.pictures.pulls import pulls_of
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.pictures.tips import Largest, TipCurve
-from heuncli.pictures.turning import LookedAt, TurningRun, turning_of
+from heuncli.pictures.turning import TurnedVectors, TurningRun, turning_of
 from heuncli.report.table_units import Units
 from heuncli.results import Array
 from heuncli.study.ask.study import Study
@@ -62,7 +64,7 @@ def from_turn_to_turn(x: float) -> str:
         return (1.0 + x * times)[:, None, None] * np.array([[1.0, 0.0, 0.0]])
 
     run = turned()
-    found = turning_of(run, run.results.time, [ANGLE], LookedAt(growing, np.zeros(1)))
+    found = turning_of(run, run.results.time, [ANGLE], TurnedVectors(growing, np.zeros(1)))
     return "the last turn" if found.turns == 1 else "the whole run"
 
 
@@ -77,6 +79,15 @@ def carried(x: float) -> str:
     return pull.name
 
 
+def between_frames(x: float) -> str:
+    """A bar that turns by x rad from the first of two frames to the second."""
+    tail = f"drives: {{d: {{joint: pivot, angle: {x!r}*t}}}}\nanalysis: {{duration: 1, samples: 2}}"
+    frames = frames_of(study(bar(tail=tail, kind="pin, axis: [1, 0, 0]")), np.zeros(0), 2)
+    assert frames.times.tolist() == [0.0, 1.0]
+    told = [f"up to {math.degrees(x):.0f}°" in sentence for sentence in frames.told]
+    return "torn" if told == [True] else "followed"
+
+
 PART = Part(
     headings=("pictures",),
     rows=(
@@ -84,6 +95,7 @@ PART = Part(
         Row("IN_ONE_PLANE", out_of_the_plane, "xy", "no plane"),
         Row("TOLD_ACROSS", across, "silent", "told"),
         Row("COMES_ROUND", from_turn_to_turn, "the last turn", "the whole run"),
+        Row("TORN", between_frames, "followed", "torn"),
         Row("NOTHING_ACTS", carried, "nothing", "pivot"),
     ),
 )
