@@ -50,11 +50,12 @@ class Ends(NamedTuple):
 def ends_of(run: ReportedRun, path: str) -> Ends | None:
     """The extremes of a number of one case, of a run of cuts those over its whole stretch; None where it has none."""
     numbers = run.kept.numbers
+    opened = _is_opened(run, path)
     if path in numbers:
-        return _ends(numbers[path], numbers[path])
+        return _ends(numbers[path], numbers[path], opened=opened)
     if path + LOWEST not in numbers:
         return None
-    ends = _ends(numbers[path + LOWEST], numbers[path + HIGHEST])
+    ends = _ends(numbers[path + LOWEST], numbers[path + HIGHEST], opened=opened)
     return ends._replace(
         low=_placed(ends.low, run, path, np.nanargmin), high=_placed(ends.high, run, path, np.nanargmax)
     )
@@ -74,13 +75,19 @@ def _placed(end: ReachedExtreme, run: ReportedRun, path: str, which: Callable[[A
     return end._replace(place=position(Place(float(section["s"][cut]), side, cut)))
 
 
-def _ends(lowest: KeptNumber, highest: KeptNumber) -> Ends:
+def _is_opened(run: ReportedRun, path: str) -> bool:
+    """Whether a number is open at some instant of the run; a stress is where a load of its section is."""
+    whole = ".".join(path.split(".")[:2]) if ".stress." in path else path
+    return any(each == whole or each.startswith(f"{whole}.") for each in run.kept.open)
+
+
+def _ends(lowest: KeptNumber, highest: KeptNumber, *, opened: bool) -> Ends:
     low = ReachedExtreme(lowest.values.get(LEAST, UNKNOWN), lowest.least_at, lowest.least_place)
     high = ReachedExtreme(highest.values.get(GREATEST, UNKNOWN), highest.greatest_at, highest.greatest_place)
     words = {word for word in (*lowest.values.values(), *highest.values.values()) if isinstance(word, str)}
-    is_open = OPEN in words
+    is_open = opened or OPEN in words
     parts = is_open and isinstance(low.value, float) and isinstance(high.value, float)
-    return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts, not words - {BEYOND})
+    return Ends(low, high, max(lowest.error, highest.error), lowest.unit, parts, not is_open and not words - {BEYOND})
 
 
 class Governing(NamedTuple):
