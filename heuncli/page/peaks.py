@@ -16,7 +16,6 @@ from heuncli.study.ask.study import Study
 from heuncli.study.search.extremes import ColumnSearch, distinct
 
 REPORTS = frozenset({"joints", "foundation", "sections"})
-MOST_SEARCHED = 5_000_000  # numbers to look at
 
 
 class LoadColumn(NamedTuple):
@@ -51,7 +50,7 @@ def peak_times(study: Study, labels: Labels, certain: Certainty) -> Peaks:
         _columns, [[k] for k in range(len(own))], errors, np.array([load.square for load in ordered]),
         _along if len(own) < len(ordered) else None,
     )  # fmt: skip
-    found = study.extremes(search, REPORTS, whole=True, most=MOST_SEARCHED)
+    found = study.extremes(search, REPORTS, whole=True)
     lowest = np.where([load.square for load in ordered], np.nan, found.low_at)  # of a size the largest alone
     times = np.concatenate([lowest, found.high_at])
     return Peaks(np.asarray(distinct(times[np.isfinite(times)])), found.searched or study.of_one_instant)

@@ -19,8 +19,8 @@ from heuncli.report.run_searches import stresses_along
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import SHARES
-from heuncli.study.ask.study import MOST_SEARCHED, Study
-from heuncli.study.search.extremes import MOST_COLUMNS, ColumnSearch, no_columns
+from heuncli.study.ask.study import Study
+from heuncli.study.search.extremes import ColumnSearch, no_columns
 from heuncli.telling.columns import KeptColumn, KeptScope, Told, all_columns, columns_of, position, run_path, values_of
 from heuncli.telling.kept import (
     EVEN,
@@ -34,29 +34,21 @@ SAME_END = 1e-6  # of a run: ends that differ by no more are those of one run, b
 SECTIONS = frozenset({"sections"})
 
 
-def keep(study: Study, wanted: frozenset[str], even_at: Sequence[float] = (), most: int = MOST_SEARCHED) -> KeptRun:
-    """The numbers of a study, of the reports that are wanted; even_at: the even instants of the run it is held to.
-
-    most: numbers to look at for extremes between the samples.
-    """
+def keep(study: Study, wanted: frozenset[str], even_at: Sequence[float] = ()) -> KeptRun:
+    """The numbers of a study, of the reports that are wanted; even_at: the even instants of the run it is held to."""
     results = study.results
     labels = replace(labels_of(study.spec), units=SI)
     page = page_of(results, labels, study.magnitudes)
     told, scope = Told(results, labels, page.certain), KeptScope(wanted, labels)
-    return record_of(_course(study, page, told, _even(results, even_at), scope, most), page, scope)
+    return record_of(_course(study, page, told, _even(results, even_at), scope), page, scope)
 
 
-def looks_between(study: Study, wanted: frozenset[str], most: int) -> bool:
+def looks_between(study: Study, wanted: frozenset[str]) -> bool:
     """Whether the extremes that are kept are searched between the samples, too, or there are none between them."""
     results = study.results
     scope = KeptScope(wanted, labels_of(study.spec))
     along = sum(len(run.loads) for run in scope.runs(results))
-    return study.of_one_instant or is_searched(study, len(columns_of(results, scope)) + along, most)
-
-
-def is_searched(study: Study, columns: int, most: int) -> bool:
-    """Whether so many columns are searched between the samples, or are too many for that."""
-    return columns <= MOST_COLUMNS and columns * len(study.search_times) <= most
+    return study.of_one_instant or study.is_searched(len(columns_of(results, scope)) + along)
 
 
 def _even(results: Results, given: Sequence[float]) -> Array:
@@ -68,7 +60,7 @@ def _even(results: Results, given: Sequence[float]) -> Array:
     return own
 
 
-def _course(study: Study, page: Page, told: Told, instants: Array, scope: KeptScope, most: int) -> KeptCourse:
+def _course(study: Study, page: Page, told: Told, instants: Array, scope: KeptScope) -> KeptCourse:
     columns = all_columns(told.results, scope)
     even = values_of(study.resample(instants), scope) if len(instants) else {path: np.zeros(0) for path in columns}
     drift: dict[str, float] = {}
@@ -78,10 +70,10 @@ def _course(study: Study, page: Page, told: Told, instants: Array, scope: KeptSc
         near_end = values_of(study.resample(np.array([last - back, last])), scope)
         rates = {path: (x[1] - x[0]) / back for path, x in near_end.items()}
         drift = {path: abs(float(rate)) for path, rate in rates.items() if np.isfinite(rate) and rate}
-    return KeptCourse(told, columns, even, instants, _bounds(study, page, scope, most), drift)
+    return KeptCourse(told, columns, even, instants, _bounds(study, page, scope), drift)
 
 
-def _bounds(study: Study, page: Page, scope: KeptScope, most: int) -> dict[str, KeptBounds]:
+def _bounds(study: Study, page: Page, scope: KeptScope) -> dict[str, KeptBounds]:
     """The extremes of all columns, searched between the samples where there are not too many of them."""
     columns, runs = columns_of(page.results, scope), scope.runs(page.results)
     certain = page.certain
@@ -92,8 +84,8 @@ def _bounds(study: Study, page: Page, scope: KeptScope, most: int) -> dict[str, 
         lambda results: _squared(columns_of(results, scope), len(results.time)), [[i] for i in range(len(columns))],
         np.array(errors), even, page.along if runs else None,
     )  # fmt: skip
-    times = None if is_searched(study, len(errors), most) else study.results.time
-    found = study.extremes(searched, scope.wanted - {SHARES}, whole=True, times=times, most=most)
+    times = None if study.is_searched(len(errors)) else study.results.time
+    found = study.extremes(searched, scope.wanted - {SHARES}, whole=True, times=times)
     low, high = (np.where(even, np.sqrt(np.abs(bound)), bound) for bound in (found.low, found.high))
     bounds = {
         column.path: _bounds_of(low[i], found.low_at[i], high[i], found.high_at[i]) for i, column in enumerate(columns)

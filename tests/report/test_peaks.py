@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.report.extremes_tables import NOT_SEARCHED
 from heuncli.results import Array
 from heuncli.study.search.extremes import MOST_COLUMNS, search
+from tests.shared.command import Heun
+from tests.shared.folders import ROOT
 
 GRID = np.linspace(0.0, 2.0, 61)
 
@@ -161,3 +164,22 @@ def test_the_two_sides_of_a_jump_are_not_searched_between() -> None:
 def test_nothing_is_searched_for_nothing() -> None:
     found = search(lambda t: np.zeros((len(t), 0)), GRID)
     assert found.low.shape == found.high_at.shape == (0,)
+
+
+@pytest.mark.heavy
+def test_few_samples_of_many_turns_hide_no_load(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Five cycles of an engine, told at nine instants; where that is too much to look at, it is told first."""
+    words = [
+        "run",
+        str(ROOT / "specs" / "engine.yaml"),
+        "--set",
+        "analysis.duration=0.4",
+        "--set",
+        "analysis.samples=9",
+    ]
+    measured = float(heun(*words, "--measure", "max joints.wrist.force").stdout)
+    told = heun(*words, "--only", "joints.wrist").stdout
+    assert f"{measured:.1f}" in told and NOT_SEARCHED not in told
+    monkeypatch.setattr("heuncli.study.ask.study.MOST_SEARCHED", 0)
+    told = heun(*words, "--only", "joints.wrist").stdout
+    assert f"{measured:.1f}" not in told and told.index(NOT_SEARCHED) < told.index("JOINTS")

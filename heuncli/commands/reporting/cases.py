@@ -34,7 +34,6 @@ from heuncli.telling.outcomes import Outcome, outcome_of
 
 DRAWN = frozenset({"motion", "joints", "impulses"})  # in the drawing of the machine
 BLOWS_ALONE = frozenset({"impulses"})
-MOST_SEARCHED = 5_000_000  # numbers to look at for extremes: whoever builds by a report waits a second for them
 EMPTY: frozenset[str] = frozenset()
 OPTIONS, SWITCHES = ("method", "step", "tolerance"), ("no_reduce", "least_norm")
 
@@ -125,7 +124,7 @@ def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
     wanted = wanted_of(study.spec)
-    kept, searched = keep(study, wanted, most=MOST_SEARCHED), looks_between(study, wanted, MOST_SEARCHED)
+    kept, searched = keep(study, wanted), looks_between(study, wanted)
     return ReportedRun(name, title, study, kept, page, searched)
 
 

@@ -106,7 +106,7 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: 
     else:
         tables = page.extremes(extremes, shares)
         if not extremes.searched:
-            tables.append(TextTable("", notes=(NOT_SEARCHED,)))
+            tables.insert(0, TextTable("", notes=(NOT_SEARCHED,)))
         if AXIS in what.entries:
             tables.append(TextTable("", notes=(AT_INSTANTS,)))
     if not tables:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
     from heuncli.study.compose.impulses import Impulses
     from heuncli.study.compose.near_singular import TellsOpen
 
-MOST_SEARCHED = 1_000_000  # numbers to look at for the extremes of a whole report; one measure has no such bound
+MOST_SEARCHED = 5_000_000  # numbers to look at for the extremes of a whole report, a second; a measure has no bound
 NONE: frozenset[str] = frozenset()
 CHUNK = 200_000  # body-instants whose answers are kept at a time
 TOO_FEW = "extremes are searched from {} instants: too few to see every turn and step of this motion"
@@ -204,20 +204,22 @@ class Study:
 
         return stretched(self.setup, bent)
 
+    def is_searched(self, columns: int) -> bool:
+        """Whether the extremes of so many columns of a whole report are sought between the asked instants, too."""
+        return columns <= extremes.MOST_COLUMNS and columns * len(self.search_times) <= MOST_SEARCHED
+
     def extremes(
-        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None,
-        most: int = MOST_SEARCHED,
-    ) -> Extremes:  # fmt: skip
+        self, searched: ColumnSearch, wanted: frozenset[str] | None, *, whole: bool = False, times: Array | None = None
+    ) -> Extremes:
         """The extremes over the run, before its horizon, of the columns made of its results.
 
         wanted: the reports that the columns are made of, None for any. whole: of a whole report, where
-        there may be so many columns that a search would outweigh the run: then they are those of the asked instants;
-        most: numbers to look at before that is so.
+        there may be so many columns that a search would outweigh the run: then they are those of the asked instants.
         times: of these instants alone.
         """
         between = times is None
         times = self.search_times if times is None else times
-        if whole and len(searched.errors) * len(times) > most:
+        if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
             times, between = self.results.time, False
         horizon = self.results.accuracy.get("horizon")
         if horizon is not None:
