@@ -33,6 +33,7 @@ SIDES = np.array([BEYOND, *[0.0] * (DEGREE - 1), BEFORE])
 FINE = -np.cos(np.pi * np.arange(4 * DEGREE + 1) / (4 * DEGREE))  # where the polynomial is looked at first
 HALVINGS = 4
 SHORT = 64.0  # times what counts as in a plane: the first node of a longer piece is 0.038 of it from the corner
+ONE_PLACE = 0.25  # of it: corners so close are one, as all that acts there counts as in the plane of the first
 NEWTON = 3  # steps to the summit of a polynomial of degree 8, from a 32nd of its length: 1e-2, 1e-4, 1e-8, rounding
 
 
@@ -111,13 +112,15 @@ class Stretch:
     def at_nodes(self, corners: Array) -> Cuts:
         """The cuts at the nodes between corners, (m,) or (n_t, m).
 
-        Where what moves over the body comes so near to a corner that the nodes between count as in the plane of the
-        one or the other, all of these are put to one place where nothing is: of so short a piece nothing is told.
+        Of corners that lie so close that the nodes between count as in the plane of the one or the other (two loads of
+        nearly the same place, or what moves over the body), all of these are put to one place where nothing is: of so
+        short a piece nothing is told.
         """
         a, b = corners[..., :-1, None], corners[..., 1:, None]
         heights = np.where(NODES < 0.0, a + 0.5 * (b - a) * (NODES + 1.0), b - 0.5 * (b - a) * (1.0 - NODES))
-        if corners.ndim == 2:
-            heights = np.where(b - a <= SHORT * self.asked.near, in_longest(corners)[:, None, None], heights)
+        short = b - a <= SHORT * self.asked.near
+        if short.any():
+            heights = np.where(short, in_longest(corners)[..., None, None], heights)
         heights = heights.reshape(*corners.shape[:-1], -1)
         return laid(self.asked, heights - self.height(np.zeros(1)), np.tile(SIDES, corners.shape[-1] - 1))
 
@@ -136,10 +139,10 @@ class Stretch:
 
 
 def in_longest(corners: Array) -> Array:
-    """The middle of the longest piece between corners (n_t, m) at each instant, (n_t,)."""
-    k = np.argmax(np.diff(corners, axis=1), axis=1)
-    rows = np.arange(len(corners))
-    return np.asarray(0.5 * (corners[rows, k] + corners[rows, k + 1]))
+    """The middle of the longest piece between corners (m,) or (n_t, m), () or (n_t,)."""
+    k = np.argmax(np.diff(corners), axis=-1)[..., None]
+    ends = np.take_along_axis(corners, k, axis=-1) + np.take_along_axis(corners, k + 1, axis=-1)
+    return np.asarray(0.5 * ends[..., 0])
 
 
 def laid(asked: Cuts, s: Array, side: Array) -> Cuts:
@@ -171,7 +174,7 @@ def stretch_of(asked: Cuts, attached: Sequence[Array], lines: Sequence[Array] = 
     inside = np.concatenate([acting, ends[~flat].ravel(), form.corners(n)])
     inside = np.sort(inside[(inside > low + asked.near) & (inside < high - asked.near)])
     corners = np.concatenate([[low], inside, [high]])
-    corners = corners[np.append(True, np.diff(corners) > 4.0 * asked.near)]
+    corners = corners[np.append(True, np.diff(corners) > ONE_PLACE * asked.near)]
     corners[-1] = high
     for turn in range(HALVINGS):
         a, b = corners[:-1], corners[1:]
