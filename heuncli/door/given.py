@@ -7,6 +7,7 @@ is refused by the place at which it stands. There are no lines: places are paths
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterator, Mapping
 
@@ -22,7 +23,9 @@ from heuncli.spec.source import DEEPEST, TOO_DEEP, TOO_DEEP_HINT, Mark, Path_, S
 MAPPING, TEXT = "<mapping>", "<text>"  # what stands in places in front of paths, where there is no file
 NO_LINE: Mark = (-1, -1)
 LONG = 60  # letters of a value that are told in a place
-MOST_DIGITS = 20  # of a whole number; a longer one is read as the spec's reader reads it: as no whole number
+LARGEST = 10**300  # of whole numbers: what is larger is no number of a scene
+KEYS = "keys of a mapping are texts"
+READ_OTHERWISE = "PyYAML takes the word on for true: give the file, or its text as text="
 SpecGiven = str | os.PathLike[str] | Mapping[str, object]
 
 
@@ -73,9 +76,10 @@ def settings_of(given: Mapping[str, object], named: Mapping[str, object]) -> lis
 
 def _settings(given: Mapping[str, object]) -> Iterator[Setting]:
     for key, value in given.items():
-        told = repr(value)
+        plain = _plain(value, (key,), {}, f"{key}=...")
+        told = repr(plain)
         word = f"{key}={told if len(told) <= LONG else told[:LONG] + '...'}"
-        yield Setting(key, _plain(value, (key,), {}, word), SourceLocation(word, 0, 0, key), SourceLocation(word, 0, 0))
+        yield Setting(key, plain, SourceLocation(word, 0, 0, key), SourceLocation(word, 0, 0))
 
 
 def _plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) -> object:
@@ -89,7 +93,7 @@ def _plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) -> 
         wrong = next((key for key in value if not isinstance(key, str)), None)
         if wrong is not None:
             message = f"a key is a plain word, found {type(wrong).__name__}"
-            raise _refused("wrong-kind", message, path, file, "keys of a mapping are texts")
+            raise _refused("wrong-kind", message, path, file, READ_OTHERWISE if type(wrong) is bool else KEYS)
         return {str(key): _plain(member, (*path, str(key)), places, file) for key, member in value.items()}
     if isinstance(value, list | tuple):
         return [_plain(member, (*path, i), places, file) for i, member in enumerate(value)]
@@ -98,7 +102,7 @@ def _plain(value: object, path: Path_, places: dict[Path_, Mark], file: str) -> 
     if isinstance(value, str):
         return str(value)
     if isinstance(value, int):
-        return int(value) if abs(value) < 10**MOST_DIGITS else float(f"{value:.17e}")
+        return int(value) if abs(value) < LARGEST else math.inf * (1 if value > 0 else -1)
     if isinstance(value, float):
         return float(value)
     if isinstance(value, os.PathLike):

@@ -11,14 +11,16 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 
 from heuncli.door.asked_run import AskedRun
 from heuncli.door.given import SpecGiven, settings_of, source_of
 from heuncli.door.solved import Solved
 from heuncli.door.warned import warn
-from heuncli.errors import Problem, UsageError
+from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.nearest import nearest
 from heuncli.records import replace
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import Given, load, load_with_cases
@@ -89,7 +91,8 @@ def solve(
     options = _options(tolerance, method, step, least_norm, reduce, axes)
     wanted = _only(only)
     begun = time.perf_counter()
-    scene, _ = read(name, settings_of(set or {}, parameters), case, source)
+    with _meant(parameters):
+        scene, _ = read(name, settings_of(set or {}, parameters), case, source)
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=_limit(time_limit))
     return _answered(scene, options, wanted, by_cause, at)
 
@@ -119,7 +122,8 @@ def solve_cases(
     options = _options(tolerance, method, step, least_norm, reduce, axes)
     options = replace(options, time_limit=_limit(time_limit))
     wanted = _only(only)
-    _, cases = read(name, settings_of(set or {}, parameters), ALL_CASES, source)
+    with _meant(parameters):
+        _, cases = read(name, settings_of(set or {}, parameters), ALL_CASES, source)
     if not cases:
         hint = "cases: {NAME: {set: {PARAMETER: VALUE}}}"
         raise UsageError(Problem("unknown-case", "solve_cases: the spec has no load cases", hint=hint))
@@ -160,6 +164,21 @@ def _only(words: str | Iterable[str] | None) -> Only | None:
     if words is None:
         return None
     return only(words.split(",") if isinstance(words, str) else words, "only", "study.measure")
+
+
+@contextmanager
+def _meant(parameters: Mapping[str, object]) -> Iterator[None]:
+    """Say of an argument that is no parameter of the scene which option may be meant."""
+    try:
+        yield
+    except SpecError as error:
+        options = {name: nearest(name, solve.__kwdefaults__ or {}) for name in parameters}
+        likely = {name: f"did you mean the option {option}?" for name, option in options.items() if option}
+        for problem in error.problems:
+            name = str(problem.location.file).partition("=")[0] if problem.location is not None else ""
+            if problem.code == "no-such-key" and name in likely:
+                error.tell(*(each._replace(hint=likely[name]) if each is problem else each for each in error.problems))
+        raise
 
 
 def _limit(seconds: float | None) -> float | None:
