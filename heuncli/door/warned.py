@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from heuncli.results import Results
 from heuncli.spec.models import Spec
 
-PACKAGE = __name__.partition(".")[0]
+PASSED = (__name__.partition(".")[0], "contextlib")  # frames that are heun's own
 
 
 class HeunWarning(UserWarning):
@@ -29,7 +29,7 @@ def warn(texts: Iterable[str]) -> None:
     if not told:
         return
     depth, frame = 1, sys._getframe()
-    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] == PACKAGE:
+    while frame.f_back is not None and str(frame.f_globals.get("__name__", "")).partition(".")[0] in PASSED:
         depth, frame = depth + 1, frame.f_back
     for text in told:
         warnings.warn(text, HeunWarning, stacklevel=depth)

@@ -65,7 +65,7 @@ def test_a_time_limit_holds_in_every_thread() -> None:
 
     def limited() -> float:
         begun = time.monotonic()
-        with pytest.raises(heuncli.LimitError, match="time limit of 0.05 s"):
+        with pytest.raises(heuncli.LimitError, match="the time limit was reached at t ="):
             heuncli.solve(text=SPEC_TEXTS["long"], tolerance=1e-13, time_limit=0.05)
         return time.monotonic() - begun
 

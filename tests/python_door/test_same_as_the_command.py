@@ -110,7 +110,7 @@ def test_errors_are_those_of_the_command(heun: Heun, path: Path) -> None:
         heuncli.solve(path)
     assert caught.value.exit_code == written.returncode
     problems = caught.value.problems
-    assert [str(problem) for problem in problems] == [line for line in _told(written.stderr, len(problems))]
+    assert [str(problem) for problem in problems] == _told(written.stderr, len(problems))
     assert code in {problem.code for problem in problems}
     assert all(problem.hint for problem in problems)
 
