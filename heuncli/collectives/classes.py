@@ -46,7 +46,9 @@ def classes_of(values: Array, limits: Array, slack: float) -> Indices:
 def by_range(cycles: Cycles, limits: Array, slack: float, weights: Array | None = None) -> Array:
     """How many cycles are in each class of ranges, (n,); weights: what is added up in place of their counts."""
     own = classes_of(cycles.ranges, limits, slack)
-    return np.bincount(own, cycles.count if weights is None else weights, minlength=len(limits) - 1)
+    return np.asarray(
+        np.bincount(own, cycles.counts if weights is None else weights, len(limits) - 1), dtype=np.float64
+    )
 
 
 def matrix(cycles: Cycles, ranges: Array, slack: float) -> Matrix:
@@ -55,7 +57,8 @@ def matrix(cycles: Cycles, ranges: Array, slack: float) -> Matrix:
     own = cycles.means
     means = limits(float(own.min(initial=np.inf)), float(own.max(initial=-np.inf)), n) if len(own) else np.zeros(n + 1)
     cell = classes_of(cycles.ranges, ranges, slack) * n + classes_of(own, means, 0.5 * slack)
-    return Matrix(ranges, means, np.bincount(cell, cycles.count, minlength=n * n).reshape(n, n))
+    counts = np.asarray(np.bincount(cell, cycles.counts, n * n), dtype=np.float64)
+    return Matrix(ranges, means, counts.reshape(n, n))
 
 
 def crossings(cycles: Cycles, levels: Array) -> Crossings:
@@ -66,10 +69,10 @@ def crossings(cycles: Cycles, levels: Array) -> Crossings:
     does not pass it.
     """
     low, high = np.minimum(cycles.begin, cycles.end), np.maximum(cycles.begin, cycles.end)
-    half = cycles.count == HALF
+    half = cycles.counts == HALF
     rises = cycles.end > cycles.begin
-    up = np.where(half, np.where(rises, 1.0, 0.0), cycles.count)
-    down = np.where(half, np.where(rises, 0.0, 1.0), cycles.count)
+    up = np.where(half, np.where(rises, 1.0, 0.0), cycles.counts)
+    down = np.where(half, np.where(rises, 0.0, 1.0), cycles.counts)
     return Crossings(
         levels,
         _above(low, up, levels, "right") - _above(high, up, levels, "right"),

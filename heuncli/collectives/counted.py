@@ -1,10 +1,10 @@
 """The collective of a history of loads: its cycles counted, sorted and added up, with the error that the run states.
 
-Each value is known within e. Cycles of a range up to 2 e may be nothing but error: they are counted apart, and are in no
-class, no crossing and no equivalent range. Those above may be off by 2 e each: by the stability of such pairings (Cohen-
-Steiner, Edelsbrunner, Harer 2007) histories within e of each other have cycles whose ranges are within 2 e, but for ones
-that are no larger than that themselves. So the equivalent range errs by no more than it would grow by if each range,
-also of those counted apart, were 2 e larger: it is a norm of the ranges.
+Each value is known within e. Cycles of a range up to 2 e may be nothing but error: they are counted apart, and are in
+no class, no crossing and no equivalent range. Those above may be off by 2 e each: histories within e of each other have
+cycles whose ranges are within 2 e, but for ones that are no larger than that themselves, by the stability of such
+pairings (Cohen-Steiner, Edelsbrunner, Harer 2007). So the equivalent range, a norm of the ranges, errs by no more
+than it would grow by if each of them, also of those counted apart, were 2 e larger.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from heuncli.collectives.equivalent import EquivalentRange, damage, equivalent_r
 from heuncli.collectives.rainflow import Cycles, endless, rainflow, repeated, turning_points
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 
 BINS, MOST_BINS = 10, 1000
 LEAST_SLOPE = 1.0  # below it the equivalent range is no norm, and no material is known
@@ -29,7 +29,8 @@ REFERENCE = 0.0  # the level of 5.1 from which on crossings count upwards
 class LoadHistory(NamedTuple):
     """One number over a motion: times and values (n,), the turning points between samples among them.
 
-    unit: SI; error: how well each value is known; of_vector: whether it is a magnitude, which has lost its direction.
+    unit: SI; error: how well each value is known; is_magnitude: whether it is never negative, and has lost the sign of
+    what it is of; of_vector: whether it is that of a vector.
     """
 
     path: str
@@ -37,6 +38,7 @@ class LoadHistory(NamedTuple):
     times: Array
     values: Array
     error: float
+    is_magnitude: bool = False
     of_vector: bool = False
 
 
@@ -83,7 +85,7 @@ class Collective:
     @property
     def total(self) -> float:
         """How many cycles are counted, halves as halves."""
-        return float(self.cycles.count.sum())
+        return float(self.cycles.counts.sum())
 
 
 def counted(history: LoadHistory, asked: Counting) -> Collective:
@@ -93,14 +95,14 @@ def counted(history: LoadHistory, asked: Counting) -> Collective:
     cycles, small = found.some(above), found.some(~above)
     ranges = classes.limits(0.0, float(cycles.ranges.max(initial=0.0)), asked.bins)
     lowest, highest = float(history.values.min()), float(history.values.max())
-    levels = classes.limits(lowest, highest, asked.bins)[1:-1] if len(cycles.count) else np.zeros(0)
-    damages = [damage(cycles.ranges, cycles.count, slope) for slope in asked.slopes]
+    levels = classes.limits(lowest, highest, asked.bins)[1:-1] if len(cycles.counts) else np.zeros(0)
+    damages = [damage(cycles.ranges, cycles.counts, slope) for slope in asked.slopes]
     return Collective(
         history=history,
         asked=asked,
         points=len(turning_points(history.values)),
         cycles=cycles,
-        below=BelowError(float(small.count.sum()), gate),
+        below=BelowError(float(small.counts.sum()), gate),
         matrix=classes.matrix(cycles, ranges, gate),
         counts=classes.by_range(cycles, ranges, gate),
         shares=np.array([classes.by_range(cycles, ranges, gate, own) for own in damages]).reshape(-1, asked.bins),
@@ -116,8 +118,8 @@ def cycles_of(values: Array, asked: Counting) -> Cycles:
     return rainflow(values) if asked.repeat == 1 else repeated(values, asked.repeat)
 
 
-def equivalent(found: Cycles, above: Array, gate: float, slope: float, cycles: float) -> EquivalentRange:
+def equivalent(found: Cycles, above: Mask, gate: float, slope: float, cycles: float) -> EquivalentRange:
     """The equivalent range of the cycles above the gate, and its error, to which the others add."""
-    value = equivalent_range(found.ranges[above], found.count[above], slope, cycles)
-    most = equivalent_range(found.ranges + gate, found.count, slope, cycles)
+    value = equivalent_range(found.ranges[above], found.counts[above], slope, cycles)
+    most = equivalent_range(found.ranges + gate, found.counts, slope, cycles)
     return EquivalentRange(slope, cycles, value, most - value)

@@ -27,7 +27,8 @@ def equivalent_range(ranges: Array, counts: Array, slope: float, cycles: float) 
     largest = float(ranges.max(initial=0.0))
     if largest == 0.0:
         return 0.0
-    return largest * float(np.sum(counts * (ranges / largest) ** slope) / cycles) ** (1.0 / slope)
+    total = float(np.sum(counts * (ranges / largest) ** slope))
+    return float(largest * (total / cycles) ** (1.0 / slope))
 
 
 def damage(ranges: Array, counts: Array, slope: float) -> Array:

@@ -15,17 +15,17 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 
 WHOLE, HALF = 1.0, 0.5
 
 
 class Cycles(NamedTuple):
-    """Cycles (n,): from which turning point to which, so that halves tell whether they rise; how often each counts."""
+    """Cycles (n,): from which turning point to which, so that halves tell whether they rise; how often each counts, counts."""
 
     begin: Array
     end: Array
-    count: Array
+    counts: Array
 
     @property
     def ranges(self) -> Array:
@@ -37,7 +37,7 @@ class Cycles(NamedTuple):
         """Halfway between the two, (n,)."""
         return 0.5 * (self.begin + self.end)
 
-    def some(self, which: Array) -> Cycles:
+    def some(self, which: Mask) -> Cycles:
         """Those that are marked."""
         return Cycles(*(x[which] for x in self))
 

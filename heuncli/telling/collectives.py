@@ -1,6 +1,6 @@
 """The load collectives of a solved scene: numbers of its motion, counted.
 
-    collective(study, "joints.main.force.y", slopes=(3.0, 5.0)).equivalents[0].range
+collective(study, "joints.main.force.y", slopes=(3.0, 5.0)).equivalents[0].range
 """
 
 from __future__ import annotations
@@ -53,10 +53,8 @@ def require_closed(several: Sequence[LoadHistory]) -> None:
     for one in several:
         off, first, last = one.values[-1] - one.values[0], one.values[0], one.values[-1]
         if abs(off) > 2.0 * one.error:
-            message = (
-                f"{one.path}: --repeat is of a motion that comes back: it begins with {first:.6g} {one.unit} and ends with "
-                f"{last:.6g}, off by {abs(off):.2g}, the error is {one.error:.1g}"
-            )
+            apart = f"it begins with {first:.6g} {one.unit} and ends with {last:.6g}, off by {abs(off):.2g}"
+            message = f"{one.path}: --repeat is of a motion that comes back: {apart}; the error is {one.error:.1g}"
             hint = "make the duration one period: --set analysis.duration=...; or begin where the motion has settled"
             problems.append(Problem(CODE, message, hint=hint, about="analysis"))
     if problems:

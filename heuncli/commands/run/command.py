@@ -29,6 +29,7 @@ from heuncli.study.model.selection import EntryKeys, Selection, asked_by, entrie
 from heuncli.telling.selection import told_by_default
 
 if TYPE_CHECKING:
+    from heuncli.commands.run.collective import CollectiveTask
     from heuncli.study.ask.measure import MeasureRequest
 
 
@@ -45,6 +46,7 @@ def main(request: RunRequest) -> int:
         from heuncli.cli import measure  # with paths and JSON 2 ms that tables do not need
 
         asked = measure.parse_all(request.measure)
+    counted = _counted(request)
     only = _only(request.only) if request.only is not None else None
     shown = units(request.units)
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
@@ -57,13 +59,18 @@ def main(request: RunRequest) -> int:
         spec, cases = load(request.spec, overrides=given, checking=False, case=request.case), {}
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.remaining())
-    options = replace(options, room=Room(*memory.room("table" if asked else form)))
+    options = replace(options, room=Room(*memory.room("table" if asked or counted else form)))
     if asked:
         measure.check(asked, spec)
-    what = asked_by([each.path for each in asked], spec) if asked else _asked(request, only, spec, form)
-    exported = form not in TABLES and not asked and request.at is None and request.case != ALL_CASES
+    if counted is not None:
+        from heuncli.commands.run.collective import require_paths
+
+        require_paths(counted, spec)
+    paths = [each.path for each in asked] if counted is None else counted.paths
+    what = asked_by(paths, spec) if paths else _asked(request, only, spec, form)
+    exported = form not in TABLES and not paths and request.at is None and request.case != ALL_CASES
     options = replace(options, wanted=what.reports, entries=what.entries, in_parts=exported)
-    task = RunTask(request, form, options, what, asked, shown)
+    task = RunTask(request, form, options, what, asked, shown, counted)
     if request.case == ALL_CASES:
         from heuncli.commands.run.cases import run_all  # of few runs
 
@@ -72,6 +79,17 @@ def main(request: RunRequest) -> int:
     emit(pieces, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     return leave(task, spec, study)
+
+
+def _counted(request: RunRequest) -> CollectiveTask | None:
+    """The collectives that are asked for."""
+    if all(getattr(request, name) is None for name in ("collective", "slope", "cycles", "bins", "repeat")):
+        return None
+    from heuncli.commands.run import collective  # with what counts
+
+    if request.collective is None:
+        collective.require_collective(request)
+    return collective.parse(request)
 
 
 def _only(words: str) -> tuple[frozenset[str], tuple[str, ...]]:

@@ -33,6 +33,7 @@ from heuncli.study.model.selection import EntryKeys, Selection
 from heuncli.study.workflow import solve
 
 if TYPE_CHECKING:
+    from heuncli.commands.run.collective import CollectiveTask
     from heuncli.study.ask.measure import MeasureRequest
 
 AXIS: EntryKeys = ("foundation", "axis")
@@ -48,6 +49,7 @@ class RunTask(NamedTuple):
     what: Selection
     asked: Sequence[MeasureRequest]
     units: Units
+    counted: CollectiveTask | None = None
 
 
 def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
@@ -59,6 +61,10 @@ def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
             from heuncli.cli import measure
 
             return study, [measure.write(task.asked, study, task.form)]
+        if task.counted is not None:
+            from heuncli.commands.run.collective import told
+
+            return study, [_counted(task, study, told(task.counted, study, task.form, task.units))]
         named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
         labels = replace(labels_of(spec), units=task.units)
         if task.form not in TABLES:
@@ -111,9 +117,19 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: 
             tables.append(TextTable("", notes=(AT_INSTANTS,)))
     if not tables:
         tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
+    return _headed(request, form, study, tables)
+
+
+def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
+    """Tables below what was solved, and how well."""
     if form == "markdown":
         return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
     return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
+
+
+def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
+    """Collectives as text."""
+    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:

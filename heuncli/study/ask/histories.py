@@ -30,7 +30,8 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
     """The numbers at some paths over the motion; errors, units: of each, SI.
 
     A vector counts by its magnitude. Raises NotOneNumber for what is no one number over a motion, SpecError
-    [unknown-path], SolveError where some of it is open, not known, or beyond the horizon, LimitError for too many turns.
+    [unknown-path], SolveError where some of it is open, not known, or beyond the horizon, LimitError where it
+    turns too often.
     """
     paths = list(errors)
     for path in paths:
@@ -54,8 +55,8 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
     values = np.where(even, np.sqrt(np.abs(rows)), rows)
     whole = (1.0 + GOOD_ENOUGH) * error  # a turn is found to within a part of the error
     return [
-        LoadHistory(path, units[path], times, values[:, k], float(whole[k]), study.numbers(path).of_vectors)
-        for k, path in enumerate(paths)
+        LoadHistory(path, units[path], times, values[:, k], float(whole[k]), squared, study.numbers(path).of_vectors)
+        for k, (path, squared) in enumerate(zip(paths, even.tolist(), strict=True))
     ]
 
 
@@ -76,7 +77,9 @@ def require_history(study: Study, path: str) -> None:
         message = f"{path}: a collective is counted over a motion, and this analysis is none"
         raise NotOneNumber(message, "give analysis.duration: --set analysis.duration=2")
     if numbers.keys[:1] == (BLOWS,):
-        raise NotOneNumber(f"{path} is of one blow: an impulse has no course in time", "a path of the motion: joints.NAME.force")
+        raise NotOneNumber(
+            f"{path} is of one blow: an impulse has no course in time", "a path of the motion: joints.NAME.force"
+        )
     if not numbers.timed:
         raise NotOneNumber(f"{path} has no instants to be counted over", f"such as heun run SPEC --measure {path}")
     if numbers.axes and not (numbers.of_vectors and len(numbers.axes) == 1):
@@ -87,7 +90,8 @@ def require_claimed(study: Study, paths: Sequence[str]) -> None:
     """Raise SolveError for a motion that goes on beyond its horizon: what comes there is not known."""
     horizon = study.results.accuracy.get("horizon")
     if horizon is not None and study.results.time[-1] >= horizon:
-        message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and the motion goes to t = {study.results.time[-1]:.6g} s"
+        end = f"the motion goes to t = {study.results.time[-1]:.6g} s"
+        message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and {end}"
         hint = f"a motion that ends before it: --set analysis.duration={0.99 * horizon:.3g}; or a smaller --tolerance"
         raise SolveError(Problem(CODE, message, hint=hint, about="analysis"))
 
@@ -100,9 +104,15 @@ def require_known(times: Array, rows: Array, paths: Sequence[str], unknown: froz
         if gaps.any():
             at = float(times[int(gaps.argmax())])
             if at in unknown:
-                why, hint = f"is not known at t = {at:.6g} s, beside a singular pose", "heun probe tells where such poses are"
+                why, hint = (
+                    f"is not known at t = {at:.6g} s, beside a singular pose",
+                    "heun probe tells where such poses are",
+                )
             else:
-                why, hint = f"is open at t = {at:.6g} s: redundant supports leave it open", "--least-norm, or stiffness, chooses a split"
+                why, hint = (
+                    f"is open at t = {at:.6g} s: redundant supports leave it open",
+                    "--least-norm, or stiffness, chooses a split",
+                )
             problems.append(Problem(CODE, f"{path} {why}", hint=hint, about=path))
     if problems:
         raise SolveError(*problems)

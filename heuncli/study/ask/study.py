@@ -100,7 +100,7 @@ class Study:
         return times
 
     def close_times(self, most: int = MOST_INSTANTS) -> tuple[Array, bool]:
-        """Instants close enough to bracket every turn, (n,) ascending, about so many at most; whether that is enough."""
+        """Instants close enough to bracket every turn, (n,) ascending, so many at most; whether that is enough."""
         times, enough = search_times(self.setup, self.history, most)
         if self.setup.cuts and len(times) > 1:
             from heuncli.study.search.passages import may_pass, passages  # where there are sections

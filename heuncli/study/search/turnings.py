@@ -26,13 +26,11 @@ from heuncli.study.search.extremes import (
 MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
 
 
-def with_turnings(
-    sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask
-) -> tuple[Array, Array, bool]:
+def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> tuple[Array, Array, bool]:
     """Instants (n,) ascending, with what is sampled there (n, n_columns); whether all turns are among them.
 
-    times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns are their squares.
-    Stops where a number is open (nan).
+    times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns
+    are their squares. Ends where a number is open (nan).
     """
     asked_times, values = [times], [grid]
     if len(times) < 2 or not np.isfinite(grid).all():
@@ -57,7 +55,7 @@ def with_turnings(
         values.append(found)
         probes += len(instants)
         if np.isnan(found).any():
-            pool = pool.some(slice(0, 0))
+            pool = pool.some(np.zeros(len(pool.target), dtype=bool))
             break
         side = np.where(pool.target < asked.n, -1.0, 1.0)
         pool = pool.divided(shape, at, side * found[np.searchsorted(instants, at), pool.column])
