@@ -21,7 +21,7 @@ WHOLE, HALF = 1.0, 0.5
 
 
 class Cycles(NamedTuple):
-    """Cycles (n,): from which turning point to which, so that halves tell whether they rise; how often each counts, counts."""
+    """Cycles (n,): from which turning point to which, so that halves tell whether they rise; counts: how often each."""
 
     begin: Array
     end: Array
