@@ -64,12 +64,12 @@ def notes(one: Collective, units: Units, *, struck: bool) -> Iterator[str]:
     unit, size = units.of(one.history.unit)
     low, high = texts(np.array([one.history.values.min(), one.history.values.max()]) * size, one.history.error * size)
     behind = f" {unit}" if unit != "1" else ""
-    yield f"{number(one.total)} cycles of {one.points} turning points between {low} and {high}{behind}"
+    yield f"{of_cycles(one.total)} of {one.points} turning points between {low} and {high}{behind}"
     if not one.total:
         yield NO_CYCLES
     if one.below.cycles:
         small = rough(one.below.range * size)
-        yield f"below the error: {number(one.below.cycles)} cycles, no larger than {small}{behind}; in no class, no sum"
+        yield f"below the error: {of_cycles(one.below.cycles)}, no larger than {small}{behind}; in no class, no sum"
     if one.history.is_magnitude:
         yield NO_SIGN if one.history.of_vector else NEVER_NEGATIVE
     if struck:
@@ -117,9 +117,9 @@ def matrix_table(one: Collective, units: Units) -> TextTable:
 
 
 def limit_texts(one: Collective, values: Array, size: float) -> list[str]:
-    """Limits of classes, and levels: at a thousandth of what they are apart."""
+    """Limits of classes, and levels: at a thousandth of what they are apart, but no decimals are enough."""
     apart = float(np.abs(np.diff(values)).min(initial=np.inf))
-    return texts(values, max(one.history.error * size, 1e-3 * apart if np.isfinite(apart) else 0.0))
+    return texts(values, max(one.history.error * size, min(1e-3 * apart, 1.0) if np.isfinite(apart) else 0.0))
 
 
 def texts(values: Array, error: float) -> list[str]:
@@ -130,8 +130,13 @@ def texts(values: Array, error: float) -> list[str]:
 
 
 def number(n: float) -> str:
-    """How many cycles: whole, or with a half."""
+    """How many: whole, or with a half."""
     return f"{n:.12g}"
+
+
+def of_cycles(n: float) -> str:
+    """So many cycles, in words."""
+    return f"{number(n)} cycle{'s' * (n != 1.0)}"
 
 
 def percent(share: float) -> str:
