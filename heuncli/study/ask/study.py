@@ -227,7 +227,7 @@ class Study:
         times = self.search_times if times is None else times
         if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
             times, between = self.results.time, False
-        horizon = self.results.accuracy.get("horizon")
+        horizon = self.results.horizon
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)
