@@ -21,12 +21,13 @@ from heuncli.results import Array
 from heuncli.results_paths import find
 from heuncli.spec.load import load_with_cases
 from heuncli.spec.models import Spec
-from heuncli.study.ask.curves import error_of
 from heuncli.study.ask.expectations import instant_among
+from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
+from heuncli.variants.stated import error_of
 
 AGREES, DIFFERS, OPEN, COARSE = "agrees", "differs", "open", "too coarse"
 ROUNDED = 1.0 + 1e-6  # a number that ends in 5 may have been rounded either way
@@ -61,6 +62,11 @@ class ComparedTable(NamedTuple):
     table: PublishedTable
     numbers: tuple[ComparedNumber, ...]
     largest: float
+
+    @property
+    def is_to_the_digit(self) -> bool:
+        """Whether the last digit decides: its numbers were printed, and have no other error."""
+        return self.table.kind != "exact" and not self.table.error
 
     @property
     def worst(self) -> ComparedNumber:
@@ -104,15 +110,15 @@ def _printed(table: PublishedTable, number: PublishedNumber, spec: Spec) -> Prin
 def _one(
     number: PublishedNumber, value: Printed, table: PublishedTable, largest: float, study: Study
 ) -> ComparedNumber:
-    found = np.asarray(_found(number, study))
+    found = _found(number, study)
     claimed = value.last / 2.0 * ROUNDED + table.error * largest
-    if np.isnan(found):
+    if math.isnan(found):
         return ComparedNumber(number, value, math.nan, math.nan, claimed, OPEN)
-    stated = error_of(study, number.path, found)
+    stated = error_of(MeasureRequest("at", number.path, number.at), Peak(found, 0.0), study) or 0.0
     allowed = claimed + stated
     coarse = not stated <= max(claimed, COARSEST * largest)
     verdict = COARSE if coarse else AGREES if abs(found - value.value) <= allowed else DIFFERS
-    return ComparedNumber(number, value, float(found), stated, allowed, verdict)
+    return ComparedNumber(number, value, found, stated, allowed, verdict)
 
 
 def _found(number: PublishedNumber, study: Study) -> float:

@@ -16,7 +16,7 @@ from heuncli.report.text_table import WIDTH, TextColumn, TextTable, labelled, ma
 from heuncli.telling.outcomes import Outcome
 
 REFERENCE = "reference"
-CASES = ("case", "what it is", "numbers", "which are", "digits", "farthest off", "verdict")
+CASES = ("case", "what it is", "numbers", "which are", "digits", "last digits", "of the largest", "verdict")
 NUMBERS = ("what", "at", "published", "heun", "difference", "last digits", "heun states", "verdict")
 OF_NUMBERS = tuple(TextColumn(head, "left") for head in NUMBERS)
 NEGLIGIBLE = 1e-12  # of the largest number of a table: what is farther off than that is told
@@ -89,27 +89,29 @@ def summary(checked: Sequence[CheckedCase]) -> str:
 def row_of(one: CheckedCase) -> tuple[str, ...]:
     """The line of a case."""
     if one.checked.error:
-        return one.case.name, one.case.about, "", "", "", "", "not solved"
+        return one.case.name, one.case.about, *[""] * 5, "not solved"
     wrong = sum(number.verdict != AGREES for number in one.numbers)
     return (
-        one.case.name, one.case.about, str(len(one.numbers)), kinds_of(one), digits_of(one.numbers),
-        farthest(one.tables), f"{wrong} differ" if wrong else AGREES,
+        one.case.name, one.case.about, str(len(one.numbers)), kinds_of(one.case), digits_of(one.numbers),
+        *farthest(one.tables), f"{wrong} differ" if wrong else AGREES,
     )  # fmt: skip
 
 
-def kinds_of(one: CheckedCase) -> str:
+def kinds_of(case: PublishedCase) -> str:
     """What its numbers are, in the words of `KINDS`."""
-    return ", ".join(dict.fromkeys(table.kind for table in one.case.tables))
+    return ", ".join(dict.fromkeys(table.kind for table in case.tables))
 
 
-def farthest(tables: Sequence[ComparedTable]) -> str:
-    """How near heun comes: in last digits, and as a share of the largest where the source has an error of its own."""
-    printed = [one for part in tables if not part.table.error for one in part.numbers if one.printed.last]
-    digits = [abs(one.in_last_digits) for one in printed]
-    shares = [abs(one.difference) / part.largest for part in tables if part.table.error for one in part.numbers]
-    parts = [f"{max(digits):.1f} of the last digit"] if digits else []
-    parts += [f"{max(shares):.0e} of the largest"] if shares and max(shares) > NEGLIGIBLE else []
-    return ", ".join(parts) or "rounding"
+def farthest(tables: Sequence[ComparedTable]) -> tuple[str, str]:
+    """How near heun comes: in last digits, and as a share of the largest where the source has an error of its own.
+
+    Numbers that are exact, too, are told as a share of the largest.
+    """
+    digits = [abs(one.in_last_digits) for part in tables if part.is_to_the_digit for one in part.numbers]
+    shares = [abs(one.difference) / part.largest for part in tables if not part.is_to_the_digit for one in part.numbers]
+    share = max(shares, default=0.0)
+    told = f"{share:.0e}" if share > NEGLIGIBLE else f"< {NEGLIGIBLE:g}"
+    return f"{max(digits):.1f}" if digits else "", told if shares else ""
 
 
 def digits_of(numbers: Sequence[ComparedNumber]) -> str:
