@@ -41,6 +41,6 @@ def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
         yield "*END STEP\n"
 
 
-def notes(cases: LoadCases) -> list[str]:
+def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Nothing: the cards do all."""
     return []

@@ -65,6 +65,6 @@ def _vector(command: str, value: Array) -> str:
     return f"{command},{','.join(map(exact, value.tolist()))}\n"
 
 
-def notes(cases: LoadCases) -> list[str]:
+def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Nothing: the macro does all."""
     return []

@@ -73,6 +73,6 @@ def _line(row: Sequence[object]) -> str:
     return text.getvalue()
 
 
-def notes(cases: LoadCases) -> list[str]:
+def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Nothing."""
     return []

@@ -51,6 +51,6 @@ def _case(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def notes(cases: LoadCases) -> list[str]:
+def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Nothing."""
     return []

@@ -17,7 +17,7 @@ MARK = "**"
 def node_lines(nodes: DeckNodes) -> Iterator[str]:
     """The points as nodes."""
     yield "*NODE, NSET=HEUN_POINTS\n"
-    for node in nodes.all:
+    for node in nodes.nodes:
         yield f"{node.number}, {', '.join(map(exact, node.at.tolist()))}\n"
 
 

@@ -10,6 +10,7 @@ import re
 
 from heuncli.foreign_text import shown
 from heuncli.load_cases.model import LoadCase, LoadCases, PointAction
+from heuncli.load_cases.solid_mesh import SolidMesh
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
@@ -18,10 +19,14 @@ LONGEST_TEXT, LONGEST_NAME = 200, 60  # letters of a title in a comment, of the 
 
 
 class DeckNames(NamedTuple):
-    """What a deck calls things: the number of the first point, and the mesh's set of all elements."""
+    """What a deck calls things: the number of the first point, and the mesh's set of all elements.
+
+    mesh: in the deck's units, where some of the loads stand at its nodes.
+    """
 
     first_node: int
     elements: str
+    mesh: SolidMesh | None = None
 
 
 def unfit_set(name: str) -> str:
@@ -58,24 +63,15 @@ class NodeLoad(NamedTuple):
 
 
 class DeckNodes:
-    """The points that carry loads in some case, numbered as they are met; the centre of mass last."""
+    """The points that carry loads in some case, numbered as they are met."""
 
-    def __init__(self, cases: LoadCases, names: DeckNames, *, with_center: bool = False) -> None:
+    def __init__(self, cases: LoadCases, names: DeckNames) -> None:
         self._by_place: dict[tuple[float, ...], DeckNode] = {}
         for case in cases.cases:
             for action in case.actions:
                 what = f"{action.kind} {action.name}"
                 self._take(action.at, names, f"{action.point}, where {what} acts" if action.point else what)
         self.nodes = [*self._by_place.values()]
-        self.center = None
-        if with_center:
-            label = "center of mass, for the couple of the angular acceleration alone"
-            self.center = DeckNode(names.first_node + len(self.nodes), cases.body.center, label)
-
-    @property
-    def all(self) -> list[DeckNode]:
-        """All of them."""
-        return self.nodes if self.center is None else [*self.nodes, self.center]
 
     def _take(self, at: Array, names: DeckNames, label: str) -> None:
         place = tuple((at + 0.0).tolist())

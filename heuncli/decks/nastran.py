@@ -139,7 +139,7 @@ def value_of(text: str) -> float:
     return float(text) if not sign else float(f"{text[0]}{head}e{sign}{tail}")
 
 
-def notes(cases: LoadCases) -> list[str]:
+def notes(cases: LoadCases, names: DeckNames) -> list[str]:
     """Where a dialect decides about a sign."""
     if any(case.field.angular_acceleration.any() for case in cases.cases):
         return ["RACC is signed as OptiStruct, MSC and Simcenter read it, MYSTRAN the other way round"]

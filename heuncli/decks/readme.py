@@ -39,7 +39,7 @@ def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Seque
         ("Axes", ["those of the body; the mesh is drawn in them, with the body's origin at 0, 0, 0"]),
         ("Mesh", _mesh(cases)),
         ("Cases", [line for k, case in enumerate(cases.cases, start=1) for line in _case(cases, case, k)]),
-        ("Points", [f"{node.number} {plain_text(node.label)}" for node in nodes.all]),
+        ("Points", [f"{node.number} {plain_text(node.label)}" for node in nodes.nodes]),
         ("Known", [_known(cases)]),
         ("Split", [f"reactions that are open are split: {plain_text(cases.split)}"] if cases.split else []),
         ("Plane", [NO_PLANE] if any(body.sums(case).relative > BALANCED for case in cases.cases) else []),
@@ -132,8 +132,12 @@ def vector(values: Array) -> str:
     return f"({', '.join(map(number, values.tolist()))})"
 
 
+LONGEST = 20  # characters of a number that Abaqus and CalculiX read: what is beyond, the exponent, would be lost
+
+
 def exact(value: float) -> str:
-    """A number with all its digits, as all programs read it: with a point."""
+    """A number with all its digits if there is room, thirteen else, with a point."""
     text = repr(float(value) + 0.0)
     mantissa, e, exponent = text.partition("e")
-    return f"{mantissa}{'' if '.' in mantissa else '.0'}{e}{exponent}"
+    text = f"{mantissa}{'' if '.' in mantissa else '.0'}{e}{exponent}"
+    return text if len(text) <= LONGEST else f"{value:.12e}"

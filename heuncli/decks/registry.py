@@ -1,6 +1,6 @@
 """The forms in which load cases are written, a row each: a new one is a module of this folder and a row here.
 
-A module has `written(cases, names)`, the text in pieces, and `notes(cases)`, what the user has to know beside it.
+A module has `written(cases, names)`, the text in pieces, and `notes(cases, names)`, what the user has to know besides.
 """
 
 from __future__ import annotations
@@ -25,9 +25,9 @@ class Deck(NamedTuple):
         pieces: Iterable[str] = self._module.written(cases, names)
         return pieces
 
-    def notes(self, cases: LoadCases) -> list[str]:
+    def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
         """What the user has to do that no card does, in sentences."""
-        found: list[str] = self._module.notes(cases)
+        found: list[str] = self._module.notes(cases, names)
         return found
 
     @property

@@ -13,7 +13,7 @@ from heuncli.cli.output import emit, say
 from heuncli.cli.solving import choice, overrides, positive, solver_options, warn
 from heuncli.cli.target import require_room
 from heuncli.commands.exporting.request import FORMATS, WHAT, ExportRequest
-from heuncli.decks.naming import DeckNames, unfit_set
+from heuncli.decks.naming import DeckNames, DeckNodes, unfit_set
 from heuncli.decks.registry import DECKS
 from heuncli.errors import Finding, Problem
 from heuncli.load_cases import unit_systems
@@ -33,6 +33,7 @@ from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
 
 if TYPE_CHECKING:
+    from heuncli.load_cases.solid_mesh import SolidMesh
     from heuncli.study.ask.measure import MeasureRequest
 
 ENDINGS = {".csv": "csv", ".json": "json", ".bdf": "nastran", ".dat": "nastran", ".nas": "nastran", ".mac": "ansys"}
@@ -61,9 +62,10 @@ def main(request: ExportRequest) -> int:
         cases = cases.taken_over(over)
     _require_writable(form, cases)
     written = in_units(cases, system)
+    names = names._replace(mesh=_mesh(request, form, written, names))
     emit(DECKS[form].written(written, names), request.output)
     if not request.quiet:
-        _say_sums(written, form)
+        _say_sums(written, form, names)
     warn(spec, study.results, request.quiet, later=study.later_warnings)
     return 0
 
@@ -155,7 +157,42 @@ def _require_writable(form: str, cases: LoadCases) -> None:
         raise UsageError(Problem("bad-option", message, hint=hint))
 
 
-def _say_sums(cases: LoadCases, form: str) -> None:
+def _mesh(request: ExportRequest, form: str, cases: LoadCases, names: DeckNames) -> SolidMesh | None:
+    """The mesh that was given, of a deck that needs one. Raises UsageError, SpecError."""
+    if request.mesh is None:
+        if form == "calculix" and any(case.field.angular_acceleration.any() for case in cases.cases):
+            message = "CalculiX has no load of angular acceleration, which some of the cases have"
+            hint = "--mesh FILE, the mesh of the body in these units: its nodes then take it; other decks have a card"
+            raise UsageError(Problem("bad-option", message, hint=hint))
+        return None
+    if form != "calculix":
+        message = f"--mesh {request.mesh}: {form} needs none, for it has cards for all of the inertia"
+        raise UsageError(Problem("bad-option", message, hint="leave it out"))
+    from heuncli.load_cases.solid_mesh import read_mesh  # of few decks
+
+    try:
+        mesh = read_mesh(_text(request.mesh), request.mesh)
+    except Finding as finding:
+        raise UsageError(Problem(finding.code, f"--mesh {finding.message}", hint=finding.hint)) from None
+    taken = {node.number for node in DeckNodes(cases, names).nodes} & set(mesh.numbers.tolist())
+    if taken:
+        message = f"--first-node {names.first_node}: the mesh has a node {min(taken)} of its own"
+        raise UsageError(Problem("bad-option", message, hint=f"such as --first-node {int(mesh.numbers.max()) + 1}"))
+    return mesh
+
+
+def _text(name: str) -> str:
+    """The text of a file. Raises UsageError."""
+    from pathlib import Path  # of few decks
+
+    try:
+        return Path(name).read_text(encoding="latin-1")  # numbers and names of elements; comments may be anything
+    except (OSError, ValueError) as reason:
+        why = getattr(reason, "strerror", None) or str(reason)
+        raise UsageError(Problem("bad-mesh", f"--mesh {name}: {why}", hint="a file that can be read")) from None
+
+
+def _say_sums(cases: LoadCases, form: str, names: DeckNames) -> None:
     """The sums of each case, and what a deck cannot say by itself, on standard error."""
     for case in cases.cases:
         sums = cases.body.balance(case)
@@ -163,5 +200,5 @@ def _say_sums(cases: LoadCases, form: str) -> None:
         what = f"{count(len(case.actions), 'load')} and inertia, the largest {largest}"
         left = f"sums of forces and moments {sums.relative:.1e} of the largest"
         say(f"heun: {case.name}: t = {case.time:.6g} s, {what}, {left}")
-    for note in DECKS[form].notes(cases):
+    for note in DECKS[form].notes(cases, names):
         say(f"heun: {note}")

@@ -57,6 +57,14 @@ class ExportRequest(NamedTuple):
         str | None,
         Option(("--elements",), "The mesh's set of all elements of the body, in decks. Default: BODY.", "NAME"),
     ] = None
+    mesh: Annotated[
+        str | None,
+        Option(
+            ("--mesh",),
+            "The mesh of the body, of solids, for CalculiX, whose nodes take the angular acceleration.",
+            "FILE",
+        ),
+    ] = None
     blow_over: Annotated[
         float | None,
         Option(("--blow-over",), "Blows as the mean loads of so long a time; decks need it.", "SECONDS"),
