@@ -29,7 +29,7 @@ def about(axis: int, angle: float) -> Matrix:
     R[axis][axis] = 1.0
     R[i][i] = R[j][j] = c
     R[i][j], R[j][i] = -s, s
-    return tuple(map(tuple, R))  # type: ignore[arg-type]
+    return tuple(map(tuple, R))  # type: ignore[return-value]
 
 
 def of_roll_pitch_yaw(angles: Vec) -> Matrix:
@@ -66,14 +66,14 @@ def shifted(p: Vec, v: Vec) -> Vec:
 
 def turned_tensor(R: Matrix, inertia: Matrix) -> Matrix:
     """A symmetric tensor, components along the world's axes; symmetric to the bit."""
-    turned_rows = product(product(R, inertia), tuple(zip(*R, strict=True)))  # type: ignore[arg-type]
+    turned_rows = product(product(R, inertia), tuple(zip(*R, strict=True)))  # type: ignore[return-value]
     size = max(abs(x) for row in inertia for x in row)
     exact = is_right(R)
     made = [[0.0] * 3 for _ in range(3)]
     for i in range(3):
         for j in range(i + 1):
             made[i][j] = made[j][i] = turned_rows[i][j] + 0.0 if exact else digits(turned_rows[i][j], size)
-    return tuple(map(tuple, made))  # type: ignore[arg-type]
+    return tuple(map(tuple, made))  # type: ignore[return-value]
 
 
 def kept(v: Vec) -> Vec:

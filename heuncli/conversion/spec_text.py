@@ -39,9 +39,9 @@ def spec_text(machine: DescribedMachine, name: str) -> str:
 def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield f"# heun run {_word(name)}"
     yield "#"
-    yield _comment(f"Made by heun import from {machine.file} ({machine.form}), whose sha256 is")
-    yield _comment(machine.sha256)
     yield from map(_comment, machine.told)
+    yield _comment(f"Made by heun import from {_file(machine.file)}, {machine.form}, sha256")
+    yield _comment(machine.sha256)
     yield "heun: 1 # version of the format; plain numbers are SI"
     yield f"title: {_quoted(_safe(machine.title))}"
     yield ""
@@ -59,6 +59,11 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     ):
         yield from _block(machine, name_, (line for entry in entries for line in _entry(entry)))
     yield from _block(machine, "analysis", (f"  {key}: {_flow(value)}" for key, value in machine.analysis.items()))
+
+
+def _file(name: str) -> str:
+    """A file without its folders, which are nobody else's."""
+    return "standard input" if name == "-" else name.replace("\\", "/").rpartition("/")[2]
 
 
 def _block(machine: DescribedMachine, name: str, content: Iterable[str]) -> Iterator[str]:
