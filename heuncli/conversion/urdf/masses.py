@@ -57,6 +57,7 @@ class _Judged:
     def __init__(self, link: Link, given: Inertial, repair: frozenset[str], fields: Fields) -> None:
         self.link, self.given, self.repair, self.fields = link, given, repair, fields
         self.inertia = _tensor(given.moments)
+        self.repaired: list[str] = []
         self.notes: dict[str, str] = {}
 
     def zero(self) -> None:
@@ -103,9 +104,10 @@ class _Judged:
 
     def change(self, word: str, moments: Vec) -> None:
         """Take other principal moments, ascending, about the same axes; note both."""
-        before = f"{self.notes['inertia']}; " if "inertia" in self.notes else ""
-        old = _listed(principal(self.inertia))
-        self.notes["inertia"] = f"{before}repaired ({word}): principal moments {_listed(moments)}; the file has {old}"
+        self.repaired.append(word)
+        old = _listed(principal(_tensor(self.given.moments)))
+        words = ", ".join(self.repaired)
+        self.notes["inertia"] = f"repaired ({words}): principal moments {_listed(moments)}; the file has {old}"
         self.inertia = _with_moments(self.inertia, moments)
 
 
