@@ -61,14 +61,16 @@ class DrawnRobot:
 class Wishes:
     """What a drawn robot is to be: shape of its tree, kinds of its joints by weight, shares of what is odd.
 
-    bare: share of links without an inertial, each on a fixed joint; mimics: share of joints that follow another one;
-    scales: masses lie between these, by their logarithm [kg].
+    bare: share of links without an inertial, each on a fixed joint; bare_root: that of the root, which may stand on no
+    joint at all; mimics: share of joints that follow another one; scales: masses lie between these, by their logarithm
+    [kg].
     """
 
     links: int = 8
     shape: str = "tree"
     kinds: Mapping[str, float] = field(default_factory=lambda: {k: 1.0 for k in EVERY_KIND})
     bare: float = 0.15
+    bare_root: float = 0.5
     mimics: float = 0.15
     odd_names: bool = True
     scales: tuple[float, float] = (0.05, 20.0)
@@ -79,7 +81,7 @@ def drawn_robot(seed: int, wishes: Wishes) -> DrawnRobot:
     """The robot of a seed: physical, so that nothing of it needs a repair."""
     rng = np.random.default_rng(seed)
     names = _names(rng, 2 * wishes.links, odd=wishes.odd_names)
-    links = [_link(rng, names[0], wishes, bare=bool(rng.integers(2)))]
+    links = [_link(rng, names[0], wishes, bare=bool(rng.random() < wishes.bare_root))]
     joints: list[DrawnJoint] = []
     for k in range(1, wishes.links):
         bare = bool(rng.random() < wishes.bare)
