@@ -6,13 +6,13 @@ Pinocchio: inverse dynamics by rnea, forward by aba; no line of it is shared wit
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
-from heuncli.conversion.asked import ImportAsked
 from heuncli.results import Results
-from tests.shared.imported import Imported, imported
+from tests.shared.imported_robots import ImportedRobot, imported_robot
 from tests.shared.pinocchio_answers import Answer, Asked, Robot
 from tests.shared.scenes import near, solved
 from tests.shared.urdf_texts import SHAPES, Wishes, drawn_robot
@@ -25,7 +25,7 @@ DIGITS = 1e-11  # of the largest of each kind
 ZERO = frozenset({"zero"})  # frames at feet and grippers with a mass, of which the file has no moment
 
 
-def agree(robot: Imported, found: Results, wanted: Answer, asked: Asked) -> None:
+def agree(robot: ImportedRobot, found: Results, wanted: Answer, asked: Asked) -> None:
     """Where the bodies are; efforts, accelerations and reactions of all joints; mass, momentum, energies."""
     reach = 1.0 + max(float(np.abs(link.position).max()) for link in wanted.links.values())
     speed = 1.0 + max(float(np.abs(link.velocity).max()) for link in wanted.links.values())
@@ -44,7 +44,7 @@ def agree(robot: Imported, found: Results, wanted: Answer, asked: Asked) -> None
     near(found.energy["potential"][0], wanted.potential, 9.81 * wanted.mass * reach, DIGITS)
 
 
-def agree_in_joints(robot: Imported, found: Results, wanted: Answer, asked: Asked) -> None:
+def agree_in_joints(robot: ImportedRobot, found: Results, wanted: Answer, asked: Asked) -> None:
     """Of every joint of one freedom effort, acceleration, force and moment, the effort counted in."""
     joints = wanted.joints
     force = max(float(np.abs(one.force).max()) for one in joints.values())
@@ -64,9 +64,9 @@ def agree_in_joints(robot: Imported, found: Results, wanted: Answer, asked: Aske
         near(turning + np.cross(joint["point"][0] - one.origin, total), one.moment, moment, DIGITS)
 
 
-def same(text: str, seed: int, options: ImportAsked, *, driven: bool = True) -> None:
+def same(text: str, seed: int, *, driven: bool = True, **options: Any) -> None:
     """A drawn state of a robot is the same to both."""
-    robot, other = imported(text, options), Robot(text, base_free=options.base_free)
+    robot, other = imported_robot(text, **options), Robot(text, base_free=options.get("base_free", False))
     asked = other.drawn(seed)
     asked = asked if driven else Asked(asked.q, asked.v, {}, asked.bases)
     wanted = other.answer(asked)
@@ -80,21 +80,21 @@ PUBLIC = ("panda", "so101", "qbmove_2dof", "double_pendulum", "quadruped", "simp
 def test_a_public_robot_needs_the_efforts_of_pinocchio(name: str) -> None:
     text = (ROBOTS / f"{name}.urdf").read_text()
     for seed in range(3):
-        same(text, seed, ImportAsked(repair=ZERO))
+        same(text, seed, repair=ZERO)
 
 
 @pytest.mark.parametrize("name", ["quadruped", "simple_humanoid"])
 def test_a_robot_on_no_ground_falls_as_pinocchio_says(name: str) -> None:
     text = (ROBOTS / f"{name}.urdf").read_text()
     for seed in range(3):
-        same(text, seed, ImportAsked(repair=ZERO, base_free=True))
+        same(text, seed, repair=ZERO, base_free=True)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
 def test_drawn_trees_need_the_efforts_of_pinocchio(shape: str) -> None:
     for seed in range(12):
         text = drawn_robot(seed, Wishes(links=4 + seed * 2, shape=shape)).text
-        same(text, seed, ImportAsked())
+        same(text, seed)
 
 
 @pytest.mark.parametrize("shape", SHAPES)
@@ -102,5 +102,13 @@ def test_joints_that_are_let_go_accelerate_as_pinocchio_says(shape: str) -> None
     """All of them free: forward dynamics, by aba there."""
     for seed in range(100, 110):
         text = drawn_robot(seed, Wishes(links=12, shape=shape, mimics=0.0, bare_root=0.0)).text
-        same(text, seed, ImportAsked(free=True), driven=False)
-        same(text, seed, ImportAsked(free=True, base_free=True), driven=False)
+        same(text, seed, free=True, driven=False)
+        same(text, seed, free=True, base_free=True, driven=False)
+
+
+@pytest.mark.parametrize("first", ["floating", "planar"])
+def test_what_floats_or_shifts_in_a_plane_goes_on_as_pinocchio_says(first: str) -> None:
+    """Its joints driven, its base pushed by nothing."""
+    for seed in range(200, 210):
+        text = drawn_robot(seed, Wishes(links=10, first=first, bare_root=seed % 2)).text
+        same(text, seed)

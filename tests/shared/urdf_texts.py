@@ -62,8 +62,8 @@ class Wishes:
     """What a drawn robot is to be: shape of its tree, kinds of its joints by weight, shares of what is odd.
 
     bare: share of links without an inertial, each on a fixed joint; bare_root: that of the root, which may stand on no
-    joint at all; mimics: share of joints that follow another one; scales: masses lie between these, by their logarithm
-    [kg].
+    joint at all; mimics: share of joints that follow another one; first: the type of the first joint; scales: masses lie
+    between these, by their logarithm [kg].
     """
 
     links: int = 8
@@ -73,6 +73,7 @@ class Wishes:
     bare_root: float = 0.5
     mimics: float = 0.15
     odd_names: bool = True
+    first: str = ""
     scales: tuple[float, float] = (0.05, 20.0)
     shuffled: bool = True
 
@@ -84,8 +85,9 @@ def drawn_robot(seed: int, wishes: Wishes) -> DrawnRobot:
     links = [_link(rng, names[0], wishes, bare=bool(rng.random() < wishes.bare_root))]
     joints: list[DrawnJoint] = []
     for k in range(1, wishes.links):
-        bare = bool(rng.random() < wishes.bare)
-        joint = _joint(rng, names[wishes.links + k], wishes, "fixed" if bare else None)
+        first = wishes.first if k == 1 else ""
+        bare = bool(rng.random() < wishes.bare) and not first
+        joint = _joint(rng, names[wishes.links + k], wishes, "fixed" if bare else first)
         parent = links[_parent(rng, wishes.shape, k)].name
         leaders = [j.name for j in joints if j.mimic is None and j.kind in MOVING]
         mimic = None
@@ -126,12 +128,14 @@ def _link(rng: np.random.Generator, name: str, wishes: Wishes, *, bare: bool) ->
     return DrawnLink(name, None if bare else mass, _frame(rng), inertia)
 
 
-def _joint(rng: np.random.Generator, name: str, wishes: Wishes, kind: str | None) -> DrawnJoint:
-    """A joint of a drawn kind; half of the axes are those of the frame."""
+def _joint(rng: np.random.Generator, name: str, wishes: Wishes, kind: str) -> DrawnJoint:
+    """A joint of a kind, else of a drawn one; half of the axes are those of the frame, of what is planar z."""
     weights = np.array(list(wishes.kinds.values()))
     kind = kind or str(rng.choice(list(wishes.kinds), p=weights / weights.sum()))
     axis = rng.choice([-1.0, 1.0]) * np.eye(3)[rng.integers(3)]
-    if rng.integers(2):
+    if kind == "planar":  # Pinocchio knows no other
+        axis = np.array([0.0, 0.0, 1.0])
+    elif rng.integers(2):
         axis = rng.normal(size=3)
         axis /= np.linalg.norm(axis)
     return DrawnJoint(name, kind, "", "", _frame(rng), axis)

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.conversion.spec_text import spec_text
-from heuncli.conversion.urdf.reader import described
-from heuncli.conversion.xml_elements import read_elements
 from heuncli.spec.source import parse
+from tests.shared.imported import described
 from tests.shared.pinocchio_answers import Asked, LinkMotion
 
 COORDINATES = {"pin": ("angle", "rate"), "slide": ("travel", "speed")}
 
 
 @dataclass(frozen=True, eq=False)
-class Imported:
+class ImportedRobot:
     """The described machine, its spec as text and as data; names in the spec by those in the file."""
 
     machine: DescribedMachine
@@ -64,16 +61,13 @@ class Imported:
         return bodies
 
 
-def imported(text: str, asked: ImportAsked | None = None) -> Imported:
-    """The spec of a URDF, read back. Raises SpecError."""
-    content = text.encode()
-    root = read_elements(content, "robot.urdf")
-    sha256 = hashlib.sha256(content).hexdigest()
-    machine = described(content, "robot.urdf", root, asked or ImportAsked(), sha256)
+def imported_robot(text: str, **asked: Any) -> ImportedRobot:
+    """A URDF as imported; asked: as ImportAsked takes it. Raises SpecError."""
+    machine = described(text, **asked)
     written = spec_text(machine, "robot.yaml")
     joints = {called_before("joint", entry): entry.name for entry in machine.joints}
     bodies = {called_before("link", body): body.name for body in machine.bodies}
-    return Imported(machine, written, parse("robot.yaml", written, "").data, joints, bodies)
+    return ImportedRobot(machine, written, parse("robot.yaml", written, "").data, joints, bodies)
 
 
 def called_before(kind: str, entry: DescribedEntry | DescribedBody) -> str:
