@@ -66,7 +66,7 @@ def shifted(p: Vec, v: Vec) -> Vec:
 
 def turned_tensor(R: Matrix, inertia: Matrix) -> Matrix:
     """A symmetric tensor, components along the world's axes; symmetric to the bit."""
-    turned_rows = product(product(R, inertia), tuple(zip(*R, strict=True)))  # type: ignore[return-value]
+    turned_rows = product(product(R, inertia), tuple(zip(*R, strict=True)))  # type: ignore[arg-type]
     size = max(abs(x) for row in inertia for x in row)
     exact = is_right(R)
     made = [[0.0] * 3 for _ in range(3)]

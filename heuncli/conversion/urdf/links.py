@@ -73,7 +73,7 @@ def _linked(joint: UrdfJoint, place: Vec, own: Placed, parent: str, points: Poin
     for number, arm in enumerate((ZERO, *_across(axis)), 1):
         name = f"{joint.name}_{number}"
         corner = points.add(own.carrier, "joint", name, shifted(own.offset, arm))
-        yield Linked(name, "plane", start, corner, {"normal": axis}, tuple(remarks) if number == 1 else ())
+        yield Linked(name, "plane", start, corner, {"normal": axis}, tuple(remarks) if number == 1 else (), joint)
 
 
 def _across(axis: Vec) -> tuple[Vec, Vec]:

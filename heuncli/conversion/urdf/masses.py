@@ -57,6 +57,7 @@ class _Judged:
     def __init__(self, link: Link, given: Inertial, repair: frozenset[str], fields: Fields) -> None:
         self.link, self.given, self.repair, self.fields = link, given, repair, fields
         self.inertia = _tensor(given.moments)
+        self.repaired: list[str] = []
         self.notes: dict[str, str] = {}
 
     def zero(self) -> None:
@@ -89,9 +90,7 @@ class _Judged:
         if "triangle" in self.repair:
             self.change("triangle", (least + lacking / 2.0, middle + lacking / 2.0, most))
         else:
-            message = (
-                f"no body has the principal moments {_listed(moments)} kg m^2: each is at most the other two's sum"
-            )
+            message = f"no body has the principal moments {_listed(moments)} kg m^2: each is at most the sum of two"
             self.report(message, "triangle", "raises the smaller two")
 
     def bound(self, word: str) -> float:
@@ -105,11 +104,10 @@ class _Judged:
 
     def change(self, word: str, moments: Vec) -> None:
         """Take other principal moments, ascending, about the same axes; note both."""
-        before = f"{self.notes['inertia']}; " if "inertia" in self.notes else ""
-        told = (
-            f"repaired ({word}): principal moments {_listed(moments)}; the file has {_listed(principal(self.inertia))}"
-        )
-        self.notes["inertia"] = before + told
+        self.repaired.append(word)
+        old = _listed(principal(_tensor(self.given.moments)))
+        words = ", ".join(self.repaired)
+        self.notes["inertia"] = f"repaired ({words}): principal moments {_listed(moments)}; the file has {old}"
         self.inertia = _with_moments(self.inertia, moments)
 
 

@@ -85,7 +85,8 @@ def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict
 
 def _joint(one: Linked, name: str, points: Points, initial: dict[str, Any]) -> DescribedEntry:
     keys = {"type": one.type, "from": points.end(one.from_), "to": points.end(one.to), **one.keys}
-    remarks = (called("joint", name, one.wanted), *one.remarks)
+    renamed = one.joint is not None and name != one.wanted
+    remarks = (f'joint "{one.joint.name}"' if renamed and one.joint is not None else "", *one.remarks)
     return DescribedEntry(name, keys | ({"initial": initial} if initial else {}), "; ".join(filter(None, remarks)))
 
 
