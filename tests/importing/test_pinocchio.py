@@ -64,13 +64,25 @@ def agree_in_joints(robot: ImportedRobot, found: Results, wanted: Answer, asked:
         near(turning + np.cross(joint["point"][0] - one.origin, total), one.moment, moment, DIGITS)
 
 
+def agree_in_planes(robot: ImportedRobot, found: Results, wanted: Answer) -> None:
+    """What is planar is held by three points in a plane: together they carry what Pinocchio's joint does."""
+    for one in wanted.bases.values():
+        planes = [found.joints[name] for name, joint in robot.spec["joints"].items() if joint["type"] == "plane"]
+        force = sum((joint["force"][0] for joint in planes), np.zeros(3))
+        arms = [np.cross(joint["point"][0] - one.origin, joint["force"][0]) for joint in planes]
+        near(force, one.force, float(np.abs(one.force).max()) + 1.0, DIGITS)
+        near(sum(arms, np.zeros(3)), one.moment, float(np.abs(one.moment).max()) + 1.0, DIGITS)
+
+
 def same(text: str, seed: int, *, driven: bool = True, **options: Any) -> None:
     """A drawn state of a robot is the same to both."""
     robot, other = imported_robot(text, **options), Robot(text, base_free=options.get("base_free", False))
     asked = other.drawn(seed)
     asked = asked if driven else Asked(asked.q, asked.v, {}, asked.bases)
     wanted = other.answer(asked)
-    agree(robot, solved(robot.moved(asked, wanted.links)), wanted, asked)
+    found = solved(robot.moved(asked, wanted.links))
+    agree(robot, found, wanted, asked)
+    agree_in_planes(robot, found, wanted)
 
 
 PUBLIC = ("panda", "so101", "qbmove_2dof", "double_pendulum", "quadruped", "simple_humanoid")

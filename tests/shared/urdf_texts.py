@@ -62,13 +62,13 @@ class Wishes:
     """What a drawn robot is to be: shape of its tree, kinds of its joints by weight, shares of what is odd.
 
     bare: share of links without an inertial, each on a fixed joint; bare_root: that of the root, which may stand on no
-    joint at all; mimics: share of joints that follow another one; first: the type of the first joint; scales: masses lie
-    between these, by their logarithm [kg].
+    joint at all; mimics: share of joints that follow another one; first: the type of the first joint, else drawn;
+    scales: masses lie between these, by their logarithm [kg].
     """
 
     links: int = 8
     shape: str = "tree"
-    kinds: Mapping[str, float] = field(default_factory=lambda: {k: 1.0 for k in EVERY_KIND})
+    kinds: Mapping[str, float] = field(default_factory=lambda: dict.fromkeys(EVERY_KIND, 1.0))
     bare: float = 0.15
     bare_root: float = 0.5
     mimics: float = 0.15
@@ -195,9 +195,7 @@ def _joint_text(joint: DrawnJoint) -> str:
     return "".join([*lines, "  </joint>\n"])
 
 
-def _text(
-    rng: np.random.Generator, links: Sequence[DrawnLink], joints: Sequence[DrawnJoint], *, shuffled: bool
-) -> str:
+def _text(rng: np.random.Generator, links: Sequence[DrawnLink], joints: Sequence[DrawnJoint], *, shuffled: bool) -> str:
     """The file: links and joints in any order."""
     pieces = [*map(_link_text, links), *map(_joint_text, joints)]
     order = rng.permutation(len(pieces)) if shuffled else range(len(pieces))
