@@ -120,7 +120,8 @@ def _link(part: Part) -> str:
     xx, xy, xz, yy, yz, zz = part.inertia[np.triu_indices(3)].tolist()
     return (
         f'  <link name="{part.name}">\n    <inertial>\n'
-        f'      <origin xyz="{_row(part.center)}" rpy="{_row(part.inertial_rpy)}"/>\n      <mass value="{part.mass!r}"/>\n'
+        f'      <origin xyz="{_row(part.center)}" rpy="{_row(part.inertial_rpy)}"/>\n'
+        f'      <mass value="{part.mass!r}"/>\n'
         f'      <inertia ixx="{xx!r}" ixy="{xy!r}" ixz="{xz!r}" iyy="{yy!r}" iyz="{yz!r}" izz="{zz!r}"/>\n'
         "    </inertial>\n  </link>\n"
     )
@@ -176,9 +177,8 @@ def holding_efforts(robot: RandomRobot, frames: dict[str, Frame], g: float = 9.8
         if part.kind not in MOVED:
             continue
         at = frames[part.name]
-        weights = [
-            (center_of(one, frames), np.array([0.0, 0.0, -one.mass * g])) for one in carried[part.name] if one.mass
-        ]
+        heavy = [(one, one.mass) for one in carried[part.name] if one.mass]
+        weights = [(center_of(one, frames), np.array([0.0, 0.0, -mass * g])) for one, mass in heavy]
         if part.kind == "prismatic":
             efforts[part.name] = -sum(float(at.axis @ weight) for _, weight in weights)
         else:

@@ -9,7 +9,6 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
-from heuncli.cli.target import require_room
 from heuncli.commands.importing.request import ImportRequest
 from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.readers import ModelReader, reader_of
@@ -36,6 +35,8 @@ def main(request: ImportRequest) -> int:
     asked = _asked(request)
     target = request.output
     if target is not None and target != STDOUT:
+        from heuncli.cli.target import require_room  # with NumPy, which is not needed to read a model
+
         require_room(target)
     require_other_file(target, [request.file])
     content = _content(request.file)

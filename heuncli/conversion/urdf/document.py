@@ -96,13 +96,17 @@ class UrdfJoint:
 
 @record
 class Robot:
-    """All of a file, its links and joints in their order; silent: how often what says nothing of the mechanics."""
+    """All of a file, its links and joints in their order; silent: how often what says nothing of the mechanics.
+
+    whole: none of them was left out for what is wrong with it, so that what is missing is missing in the file.
+    """
 
     element: XmlElement
     title: str
     links: dict[str, Link]
     joints: dict[str, UrdfJoint]
     silent: dict[str, int]
+    whole: bool
 
 
 def robot_of(root: XmlElement, fields: Fields) -> Robot:
@@ -126,7 +130,8 @@ def robot_of(root: XmlElement, fields: Fields) -> Robot:
             message = f"<{element.tag}> is no part of a robot that is read"
             hint = did_you_mean(element.tag, ("link", "joint", *sorted(SILENT)), "parts")
             fields.report("import-part", element, f"robot {root.attributes.get('name', '')}".strip(), message, hint)
-    return Robot(root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(silent))
+    whole = len(links) == len(root.all("link")) and len(joints) == len(root.all("joint"))
+    return Robot(root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(silent), whole)
 
 
 def _require_plain(root: XmlElement, fields: Fields) -> None:

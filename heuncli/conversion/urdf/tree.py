@@ -41,7 +41,7 @@ def tree_of(robot: Robot, fields: Fields) -> LinkTree | None:
         if not fields.problems:
             fields.report("import-tree", robot.element, "", "the robot has no links", "is it the right file?")
         return None
-    if len(fields.problems) > before:
+    if len(fields.problems) > before or not robot.whole:
         return None
     roots = [link for name, link in robot.links.items() if name not in above]
     if len(roots) > 1:
@@ -63,7 +63,7 @@ def _carried(robot: Robot, fields: Fields) -> dict[str, UrdfJoint]:
     for joint in robot.joints.values():
         ends = (("parent", joint.parent), ("child", joint.child))
         for tag, name in ends:
-            if name not in robot.links:
+            if name not in robot.links and robot.whole:
                 hint = did_you_mean(name, robot.links, "links")
                 fields.report("import-tree", joint.element, joint.path, f"its {tag} '{name}' is no link", hint)
         first = above.setdefault(joint.child, joint)
