@@ -53,6 +53,7 @@ def oracle() -> list[Solution]:
     return [solve(read, state, t) for _, t, state in instants(run().results)]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("t", TIMES)
 def test_motion_and_the_ground(t: float) -> None:
     found, k = run().results, TIMES.index(t)
