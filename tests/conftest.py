@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -59,6 +61,17 @@ def pytest_configure() -> None:
 
 def pytest_report_header() -> str:
     return f"heun: {KERNEL} kernel, {Path(FOLDER).parent}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Nothing of what is collected becomes garbage: it is not searched for any, now or while the tests run."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
