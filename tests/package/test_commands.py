@@ -62,6 +62,7 @@ def folders_of(modules: set[str]) -> Iterator[str]:
     return (name.split(".")[2] for name in modules)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("command", COMMANDS, ids=[command.name for command in COMMANDS])
 def test_a_command_loads_nothing_of_another(command: Command) -> None:
     found = loaded(command.name, *LINES.get(command.name, ("-",)))
