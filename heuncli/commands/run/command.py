@@ -23,6 +23,7 @@ from heuncli.study.model.selection import asked_by
 from heuncli.telling.selection import only, selected, told_by_default
 
 if TYPE_CHECKING:
+    from heuncli.commands.run.collective import CollectiveTask
     from heuncli.study.ask.measure import MeasureRequest
 
 
@@ -39,6 +40,7 @@ def main(request: RunRequest) -> int:
         from heuncli.telling import measure  # with paths and JSON 2 ms that tables do not need
 
         asked = measure.parse_all(request.measure)
+    counted = _counted(request)
     alone = only(request.only.split(",")) if request.only is not None else None
     shown = units(request.units)
     axes = "world" if request.axes is None else choice("--axes", request.axes, JOINT_AXES)
@@ -47,17 +49,22 @@ def main(request: RunRequest) -> int:
     spec, cases = read(request.spec, overrides(request.set), request.case)
     require_other_file(request.output, [request.spec])
     options = replace(options, load_seconds=time.perf_counter() - begun, time_limit=alarm.remaining())
-    options = replace(options, room=Room(*memory.room("table" if asked else form)))
+    options = replace(options, room=Room(*memory.room("table" if asked or counted else form)))
     if asked:
         measure.check(asked, spec)
-    if asked:
-        what = asked_by([each.path for each in asked], spec)
+    if counted is not None:
+        from heuncli.commands.run.collective import require_paths
+
+        require_paths(counted, spec)
+    paths = [each.path for each in asked] if counted is None else counted.paths
+    if paths:
+        what = asked_by(paths, spec)
     else:
         default = told_by_default(spec) if form in TABLES or spec.report is not None else EXPORT_DEFAULT
         what = selected(alone, spec, default, by_cause=request.by_cause)
-    exported = form not in TABLES and not asked and request.at is None and request.case != ALL_CASES
+    exported = form not in TABLES and not paths and request.at is None and request.case != ALL_CASES
     options = replace(options, wanted=what.reports, entries=what.entries, in_parts=exported)
-    task = RunTask(request, form, options, what, asked, shown)
+    task = RunTask(request, form, options, what, asked, shown, counted)
     if request.case == ALL_CASES:
         from heuncli.commands.run.cases import run_all  # of few runs
 
@@ -66,3 +73,14 @@ def main(request: RunRequest) -> int:
     emit(pieces, request.output)
     say_what_stays(request.units, "--measure" if asked else form, request.quiet)
     return leave(task, spec, study)
+
+
+def _counted(request: RunRequest) -> CollectiveTask | None:
+    """The collectives that are asked for."""
+    if all(getattr(request, name) is None for name in ("collective", "slope", "cycles", "bins", "repeat")):
+        return None
+    from heuncli.commands.run import collective  # with what counts
+
+    if request.collective is None:
+        collective.require_collective(request)
+    return collective.parse(request)

@@ -29,6 +29,7 @@ from heuncli.study.model.selection import Selection
 from heuncli.telling.tables import TablesAsked, tables_of
 
 if TYPE_CHECKING:
+    from heuncli.commands.run.collective import CollectiveTask
     from heuncli.study.ask.measure import MeasureRequest
 
 
@@ -41,6 +42,7 @@ class RunTask(NamedTuple):
     what: Selection
     asked: Sequence[MeasureRequest]
     units: Units
+    counted: CollectiveTask | None = None
 
 
 def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
@@ -52,6 +54,10 @@ def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
             from heuncli.telling import measure
 
             return study, [measure.write(task.asked, study, task.form)]
+        if task.counted is not None:
+            from heuncli.commands.run.collective import told
+
+            return study, [_counted(task, study, told(task.counted, study, task.form, task.units))]
         named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
         labels = replace(labels_of(spec), units=task.units)
         if task.form not in TABLES:
@@ -83,9 +89,19 @@ def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Ite
 def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
     at = instants(request.at, study.results.time) if request.at is not None else None
     tables = tables_of(study, labels, TablesAsked(what, at, request.all, details))
+    return _headed(request, form, study, tables)
+
+
+def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
+    """Tables below what was solved, and how well."""
     if form == "markdown":
         return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
     return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
+
+
+def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
+    """Collectives as text."""
+    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:
