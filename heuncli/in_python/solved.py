@@ -21,9 +21,11 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
+    from heuncli.collectives.counted import Collective
     from heuncli.in_python.diagrams import Diagram
     from heuncli.in_python.measured import Number
     from heuncli.in_python.signals import Signal
+    from heuncli.load_cases.model import LoadCases
 
 
 class Solved(Mapping[str, "Signal"]):
@@ -134,6 +136,42 @@ class Solved(Mapping[str, "Signal"]):
         Raises UsageError for instants outside of the run.
         """
         return Solved(self._run.told_at(distinct(times)[1]))
+
+    def collective(
+        self,
+        path: str,
+        *,
+        slopes: float | Sequence[float] = (),
+        cycles: float | None = None,
+        bins: int = 10,
+        repeat: int = 1,
+        closed: bool = False,
+    ) -> Collective:
+        """The load collective of a number over the motion, of a vector of its magnitude, as `--collective` counts it.
+
+        slopes: of Wöhler lines, each with its damage-equivalent range in `equivalents`, of so many cycles (None: of one
+        each time the motion is run through); bins: classes of ranges and means; repeat: how often the motion is run
+        through; closed: for ever. Ranges and levels in SI. Raises HeunError for what has no collective.
+        """
+        from heuncli.telling.collectives import collective
+
+        of = (float(slopes),) if isinstance(slopes, int | float) else tuple(slopes)
+        with self._run.asking():
+            return collective(self.study, path, slopes=of, cycles=cycles, bins=bins, repeat=repeat, closed=closed)
+
+    def load_cases(self, body: str, at: float | str) -> LoadCases:
+        """The self-balanced load cases of a body, as `heun export loads` writes them, in SI and in the body's axes.
+
+        at: instants, as `--at` of that command takes them: 0.31, "first,last", "peak:joints.main.force,impulse:0".
+        Raises HeunError for instants that are none, and for loads that are open.
+        """
+        from heuncli.load_cases.asked import parse
+        from heuncli.load_cases.gathered import gathered
+        from heuncli.telling.asked_values import choice
+
+        choice("load_cases", body, list(self.spec.bodies))
+        with self._run.asking():
+            return gathered(self.study, body, parse(str(at)))
 
     # -- other forms
 
