@@ -219,14 +219,9 @@ PARTS = {
     "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
-<<<<<<< HEAD
     "pipeline": pipeline, "door": python_door, "growth": growth, "variants": variants, "sweeps": sweeps,
-    "pictures": pictures, "reports": lambda: reports(median_ms), "pages": pages,
-=======
-    "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
     "pictures": pictures, "reports": lambda: reports(median_ms),
     "imports": lambda: imports(median_ms), "pages": pages,
->>>>>>> 6e8d860e035fe909958bc9d6db2b29cc23b7993a
 }  # fmt: skip
 
 if __name__ == "__main__":
