@@ -1,13 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-<<<<<<< HEAD
 Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, door,
-growth, variants, sweeps, pictures, reports, pages; each line: what, error, time; memory: megabytes; growth: counts;
-=======
-Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth: counts;
->>>>>>> 6e8d860e035fe909958bc9d6db2b29cc23b7993a
-pages: frames a second.
+growth, variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth:
+counts; pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
