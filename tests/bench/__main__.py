@@ -1,8 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth: counts;
-pages: frames a second.
+Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, door,
+growth, variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth:
+counts; pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -50,6 +50,7 @@ from tests.bench.memory import memory
 from tests.bench.pages import pages
 from tests.bench.pictures import pictures
 from tests.bench.pipeline import pipeline
+from tests.bench.python_door import python_door
 from tests.bench.reduced import reduced
 from tests.bench.reports import reports
 from tests.bench.sweeps import sweeps
@@ -213,7 +214,7 @@ PARTS = {
     "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
-    "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
+    "pipeline": pipeline, "door": python_door, "growth": growth, "variants": variants, "sweeps": sweeps,
     "pictures": pictures, "reports": lambda: reports(median_ms),
     "imports": lambda: imports(median_ms), "pages": pages,
 }  # fmt: skip
