@@ -88,7 +88,7 @@ def require_history(study: Study, path: str) -> None:
 
 def require_claimed(study: Study, paths: Sequence[str]) -> None:
     """Raise SolveError for a motion that goes on beyond its horizon: what comes there is not known."""
-    horizon = study.results.accuracy.get("horizon")
+    horizon = study.results.horizon
     if horizon is not None and study.results.time[-1] >= horizon:
         end = f"the motion goes to t = {study.results.time[-1]:.6g} s"
         message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and {end}"
