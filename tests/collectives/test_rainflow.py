@@ -155,7 +155,7 @@ def test_halves_and_cycles_use_every_range_once() -> None:
 
 
 def test_laws_of_a_count() -> None:
-    """Scaled loads have scaled ranges, shifted ones shifted means; turned in sign or time, or warped, they count alike."""
+    """Scaled, shifted loads have such ranges and means; turned in sign or time, or warped, they count alike."""
     for history in histories():
         cycles = by_range_and_mean(rainflow(history))
         scaled = by_range_and_mean(rainflow(4.0 * history))

@@ -7,7 +7,6 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from heuncli.cli.entry import UsageError
-from heuncli.cli.measure import check
 from heuncli.cli.solving import all_or_errors
 from heuncli.cli.units import TABLES
 from heuncli.collectives.counted import BINS, LEAST_SLOPE, MOST_BINS, Counting
@@ -23,6 +22,7 @@ from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber
 from heuncli.study.ask.study import Study
 from heuncli.telling.collectives import collectives
+from heuncli.telling.measure import check
 
 OPTION = "--collective"
 MOST_REPEATS = 10**12
