@@ -144,5 +144,5 @@ def told(asked: CollectiveTask, study: Study, form: str, units: Units) -> str | 
         return dump(head | {"status": results.status, "collectives": {one.history.path: block(one) for one in found}})
     if form not in TABLES:
         return "".join(csv_lines(found))
-    struck = bool(results.impulses)
+    struck = bool(study.history.blows)
     return [table for one in found for table in tables(one, units, struck=struck)]
