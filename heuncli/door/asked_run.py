@@ -20,6 +20,7 @@ from heuncli.study.model.error_places import placed
 from heuncli.telling.asked_values import within_run
 
 if TYPE_CHECKING:
+    from heuncli.collectives.counted import Collective, Counting
     from heuncli.door.measured import Number
 
 
@@ -70,6 +71,13 @@ class AskedRun:
 
         with self.asking():
             return measured(self.study, words)
+
+    def collective(self, path: str, asked: Counting) -> Collective:
+        """The load collective of the number at a path. Raises UnknownPath, HeunError."""
+        from heuncli.telling.collectives import collectives
+
+        with self.asking():
+            return collectives(self.study, [path], asked)[0]
 
     def told_at(self, times: Array) -> AskedRun:
         """The same run at other instants, (n,) ascending. Raises UsageError outside of it."""

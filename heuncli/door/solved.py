@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
+    from heuncli.collectives.counted import Collective
     from heuncli.door.diagrams import Diagram
     from heuncli.door.measured import Number
     from heuncli.door.signals import Signal
@@ -126,6 +127,25 @@ class Solved(Mapping[str, "Signal"]):
         Extremes are those between the samples, too, up to the horizon; nan is open, or not claimed. Raises UsageError.
         """
         return self._run.measure(words)
+
+    def collective(
+        self,
+        path: str,
+        *,
+        slopes: Sequence[float] = (),
+        cycles: float | None = None,
+        bins: int = 10,
+        repeat: int = 1,
+        closed: bool = False,
+    ) -> Collective:
+        """The load collective of a number over the motion, as `--collective` counts it: rainflow cycles, crossings.
+
+        slopes: of Wöhler lines, an equivalent range each, of so many cycles (None: of one each time); bins: classes;
+        repeat: how often the motion is run through, closed: for ever. Raises HeunError where loads are not known.
+        """
+        from heuncli.collectives.counted import Counting
+
+        return self._run.collective(path, Counting(tuple(map(float, slopes)), cycles, bins, repeat, closed))
 
     def at(self, times: float | Sequence[float] | Array) -> Solved:
         """The same run with its results told at other instants [s] of it, in ascending; nothing is solved again.
