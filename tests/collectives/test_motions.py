@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import jsonschema
 import numpy as np
 import pytest
 
+import heuncli
 from heuncli.collectives.counted import Collective, Counting, LoadHistory, counted
 from heuncli.collectives.rainflow import rainflow
 from heuncli.errors import HeunError
@@ -233,6 +235,17 @@ def test_options_that_mean_nothing_are_refused_all_at_once(heun: Heun) -> None:
     assert done.returncode == 2
     assert done.stderr.count("[bad-option]") == 6
     assert "not with --measure, --all" in done.stderr
+
+
+def test_python_asks_alike() -> None:
+    """The door gives the same object, and refuses ways to count that are none, by their names."""
+    solved = heuncli.solve(text=SHAKER.format(TWO_TONES))
+    one = solved.collective(SIDE, slopes=[3], repeat=2)
+    other = collective(shaker(TWO_TONES), SIDE, slopes=(3.0,), repeat=2)
+    assert one.equivalents == other.equivalents
+    with pytest.raises(heuncli.UsageError) as caught:
+        solved.collective(SIDE, slopes=[0.5], cycles=math.nan, bins=0, repeat=0)
+    assert [problem.message.split()[0] for problem in caught.value.problems] == ["slopes", "cycles", "bins", "repeat"]
 
 
 def test_forms(heun: Heun, folder: Path) -> None:
