@@ -15,7 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli.collectives import classes
-from heuncli.collectives.classes import Crossings, Matrix
+from heuncli.collectives.classes import LevelCrossings, Matrix
 from heuncli.collectives.equivalent import EquivalentRange, damage, equivalent_range
 from heuncli.collectives.rainflow import Cycles, endless, rainflow, repeated, turning_points
 from heuncli.named_tuples import NamedTuple
@@ -45,7 +45,7 @@ class LoadHistory(NamedTuple):
     of_vector: bool = False
 
 
-class Unfit(NamedTuple):
+class UnfitCounting(NamedTuple):
     """A way of counting that is none: the field of Counting, what is expected, such as what."""
 
     name: str
@@ -53,10 +53,12 @@ class Unfit(NamedTuple):
     example: str
 
 
-SLOPES = Unfit("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
-CYCLES = Unfit("cycles", "of how many cycles equivalent ranges are, a positive number", "1e6")
-CLASSES = Unfit("bins", f"how many classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
-REPEATS = Unfit("repeat", "how often the motion is run through, a whole number, or closed", "1000; or closed: for ever")
+SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
+CYCLES = UnfitCounting("cycles", "of how many cycles equivalent ranges are, a positive number", "1e6")
+CLASSES = UnfitCounting("bins", f"how many classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
+REPEATS = UnfitCounting(
+    "repeat", "how often the motion is run through, a whole number, or closed", "1000; or closed: for ever"
+)
 
 
 class Counting(NamedTuple):
@@ -71,7 +73,7 @@ class Counting(NamedTuple):
     repeat: int = 1
     closed: bool = False
 
-    def unfit(self) -> Sequence[Unfit]:
+    def unfit(self) -> Sequence[UnfitCounting]:
         """What of it cannot be counted by."""
         checks = (
             (all(LEAST_SLOPE <= m <= MOST_SLOPE for m in self.slopes), SLOPES),
@@ -106,7 +108,7 @@ class Collective:
     matrix: Matrix
     counts: Array
     shares: Array
-    crossings: Crossings
+    crossings: LevelCrossings
     equivalents: Sequence[EquivalentRange]
 
     @property

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from heuncli.collectives.counted import Collective, Counting, LoadHistory, Unfit, counted
+from heuncli.collectives.counted import Collective, Counting, LoadHistory, UnfitCounting, counted
 from heuncli.errors import Problem, SolveError, UsageError
 from heuncli.study.ask.histories import CODE, histories
 from heuncli.study.ask.measure import MeasureRequest, Peak
@@ -49,7 +49,7 @@ def collectives(study: Study, paths: Sequence[str], asked: Counting) -> list[Col
     return [counted(history, asked) for history in found]
 
 
-def said(unfit: Unfit, option: str, value: object) -> Problem:
+def said(unfit: UnfitCounting, option: str, value: object) -> Problem:
     """What is wrong with an option."""
     message = f"{option} {value}: expected {unfit.expected}"
     return Problem("bad-option", message, hint=f"such as {option} {unfit.example}")

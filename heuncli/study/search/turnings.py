@@ -33,7 +33,7 @@ OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that rep
 FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
 
 
-class Found(NamedTuple):
+class SampledTurns(NamedTuple):
     """What was sampled: times (n,) ascending, values (n, n_columns); complete: whether all was looked at that may turn.
 
     Ends where a number is open (nan).
@@ -44,13 +44,13 @@ class Found(NamedTuple):
     complete: bool
 
 
-def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> Found:
+def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> SampledTurns:
     """What is sampled at the instants of a grid and at all turns between them.
 
     times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns
     are their squares.
     """
-    found = resolved(sample, Found(times, grid, complete=True), errors, even)
+    found = resolved(sample, SampledTurns(times, grid, complete=True), errors, even)
     if len(times) < 2 or not found.complete or not np.isfinite(found.values).all():
         return found
     columns = np.arange(grid.shape[1], dtype=np.intp)
@@ -70,7 +70,7 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
         at = pool.probe(shape)
         instants = distinct(at)
         values = sample(instants)
-        parts.append(Found(instants, values, complete=True))
+        parts.append(SampledTurns(instants, values, complete=True))
         probes += len(instants)
         if np.isnan(values).any():
             return together(parts, complete=True)
@@ -79,7 +79,7 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
     return together(parts, complete=not len(pool.target))
 
 
-def resolved(sample: ColumnsAt, found: Found, errors: Array, even: Mask) -> Found:
+def resolved(sample: ColumnsAt, found: SampledTurns, errors: Array, even: Mask) -> SampledTurns:
     """The grid with more instants where a number does not run as its neighbours foretell."""
     span, asked = float(np.ptp(found.times)), 0
     new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that were not asked yet
@@ -100,7 +100,7 @@ def resolved(sample: ColumnsAt, found: Found, errors: Array, even: Mask) -> Foun
         size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
         slack = np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors)
         off = ~(np.abs(there - expected) <= np.maximum(FORETOLD * swing, slack)).all(axis=1)
-        found = together([found, Found(at, there, complete=True)], complete=True)
+        found = together([found, SampledTurns(at, there, complete=True)], complete=True)
         new = np.zeros(len(found.times) - 1, dtype=bool)
         left = np.searchsorted(found.times, times[k[off]])
         new[left] = new[left + 1] = True
@@ -131,12 +131,12 @@ def cubic(t: Array, f: Array, at: Array) -> Array:
     return value
 
 
-def together(parts: Sequence[Found], *, complete: bool) -> Found:
+def together(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTurns:
     """All instants that were asked, ascending, each once."""
     times, values = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
     order = np.argsort(times, kind="stable")
     first = np.append(True, np.diff(times[order]) > 0.0)
-    return Found(times[order][first], values[order][first], complete)
+    return SampledTurns(times[order][first], values[order][first], complete)
 
 
 def margin(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array]:
