@@ -11,8 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from heuncli.named_tuples import NamedTuple
 from heuncli.published.cases import PublishedCase, PublishedNumber, PublishedTable
 from heuncli.published.printed import Printed, exact, printed
