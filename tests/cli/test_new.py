@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.commands.new.command import kinds
+from heuncli.published.files import names
 from heuncli.spec.load import load
 from tests.shared.command import Heun
 
@@ -27,7 +28,11 @@ KINDS = (
 def test_the_kinds_are_listed(heun: Heun) -> None:
     assert tuple(kinds()) == KINDS
     lines = heun("new").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == [*KINDS]
+    gap = lines.index("")
+    assert [line.split()[0] for line in lines[:gap]] == [*KINDS]
+    assert "heun check --references" in lines[gap + 1]
+    assert [line.split()[0] for line in lines[gap + 2 :]] == [*names()]
+    assert not {*KINDS} & {*names()}
     assert max(map(len, lines)) <= 120
 
 
