@@ -85,6 +85,12 @@ def measures(data: dict[str, Any], incomplete: str) -> Iterator[str]:
     yield from (how + space + path for path in paths(data))
 
 
+def collectives(data: dict[str, Any], incomplete: str) -> Iterator[str]:
+    """Paths of numbers, behind those that are given."""
+    given = incomplete[: incomplete.rfind(",") + 1]
+    yield from (given + path for path in paths(data))
+
+
 def paths(data: dict[str, Any]) -> Iterator[str]:
     """The paths of the numbers that a scene may have."""
     from heuncli.results_schema import NAMES, ROWS, XYZ
@@ -139,5 +145,5 @@ def _files(ctx: typer.Context, incomplete: str) -> list[str]:
 
 BY_WORD: dict[str, Callable[[typer.Context, str], list[str]]] = {
     "spec": _files, "set": _of_spec(sets), "case": _of_spec(cases), "only": _of_spec(only),
-    "measure": _of_spec(measures), "body": _of_spec(bodies),
+    "measure": _of_spec(measures), "collective": _of_spec(collectives), "body": _of_spec(bodies),
 }  # fmt: skip

@@ -76,6 +76,7 @@ COMMANDS = (
     Command("export", folder="exporting", page="exporting"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
+    Command("import", folder="importing", page="importing"),
     Command("methods", page="methods"),
     Command("explain"),
     Command("schema"),

@@ -135,7 +135,7 @@ def _solved(request: ExportRequest, spec: Spec, body: str, asked: Sequence[Asked
     """The scene solved as far as the cases need it."""
     several: list[MeasureRequest] = measures(asked)
     if several:
-        from heuncli.cli.measure import check  # where extremes are asked for
+        from heuncli.telling.measure import check  # where extremes are asked for
 
         check(several, spec, "--at")
     ends = {name: {joint.a, joint.b} for name, joint in spec.joints.items()}
