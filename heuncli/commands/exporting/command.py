@@ -10,7 +10,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
-from heuncli.cli.solving import choice, overrides, positive, solver_options, warn
+from heuncli.cli.solving import choice, overrides, solver_options, warn
 from heuncli.cli.target import require_room
 from heuncli.commands.exporting.request import FORMATS, WHAT, ExportRequest
 from heuncli.decks.naming import DeckNames, DeckNodes, unfit_set
@@ -31,6 +31,7 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
+from heuncli.telling.asked_values import positive
 
 if TYPE_CHECKING:
     from heuncli.load_cases.solid_mesh import SolidMesh
