@@ -16,7 +16,7 @@ from tests.shared.command import SPEC_TEXTS, Done, Heun
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 # And pictures, pages and reports, which are shown numbers.
-SPARED = {"browser", "closed_forms", "convergence", "honesty", "limits", "pictures", "reporting", "show"}
+SPARED = {"browser", "closed_forms", "convergence", "exporting", "honesty", "limits", "pictures", "reporting", "show"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
 SHARE = 4

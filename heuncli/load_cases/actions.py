@@ -17,6 +17,7 @@ from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.results import Array
+from heuncli.shapes.inertia import pseudo_inertia
 from heuncli.spec.models import Spec
 from heuncli.study.compose.recovery import Recovery
 
@@ -51,7 +52,20 @@ def fields_of(recovery: Recovery, body: int) -> list[AccelerationField]:
     R = states.R[:, body]
     vectors = [states.a[:, body], np.broadcast_to(gravity, (len(R), 3)), states.omega[:, body], states.alpha[:, body]]
     a, g, w, u = in_body_axes(R, np.array(vectors))
-    return [AccelerationField(a[k], g[k], w[k], u[k]) for k in range(len(R))]
+    own = recovery.setup.scene.mechanism.bodies[body]
+    P = pseudo_inertia(own.mass, own.center, own.inertia)
+    r = float(np.sqrt(np.trace(P[:3, :3]) / own.mass))
+    return [_tidy_field(AccelerationField(a[k], g[k], w[k], u[k]), r) for k in range(len(R))]
+
+
+def _tidy_field(field: AccelerationField, r: float) -> AccelerationField:
+    """The field without what rounding makes of a body that does not turn, or not so; r: how far its masses lie."""
+    a, g, w, u = field.origin, field.gravity, field.angular_velocity, field.angular_acceleration
+    least = ROUNDING * max(float(np.abs(x).max()) for x in (a, g, r * u, r * w * w))
+    return AccelerationField(
+        _cut(a, least), _cut(g, least), _cut(w, ROUNDING * float(np.abs(w).max())),
+        np.where(r * np.abs(u) <= least, 0.0, u),
+    )  # fmt: skip
 
 
 def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:

@@ -1,7 +1,7 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, pictures, reports, pages; each line: what, error, time; memory: megabytes; growth: counts; pages:
+Parts: motion, chart, chain, process, export, loads, memory, sections, causes, reduced, balance, lagrange, pipeline,
+growth, variants, sweeps, pictures, reports, pages, loads; each line: what, error, time; memory: megabytes; growth: counts; pages:
 frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
@@ -44,6 +44,7 @@ from tests.bench.generated import chain
 from tests.bench.growth import growth
 from tests.bench.honesty import honesty
 from tests.bench.lagrange import equations
+from tests.bench.load_cases import load_cases
 from tests.bench.long import long
 from tests.bench.memory import memory
 from tests.bench.pages import pages
@@ -214,6 +215,7 @@ PARTS = {
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
     "pictures": pictures, "reports": lambda: reports(median_ms), "pages": pages,
+    "loads": load_cases,
 }  # fmt: skip
 
 if __name__ == "__main__":
