@@ -54,8 +54,9 @@ def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Seque
 
 
 SPREAD = (
-    "A distributed load stands as the two forces at the ends of its line that are statically equal to it. Between the "
-    "ends a mesh bears more truly what it is, per length and linear: the comments of its case have it at both ends."
+    "A distributed load stands as forces at the ends of ten pieces of its line, statically equal piece by piece: "
+    "section loads are exact at these points. What it is per length there stands in the comments of its case; a mesh may bear "
+    "that instead."
 )
 
 

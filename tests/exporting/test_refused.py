@@ -99,14 +99,20 @@ def test_a_blow_in_a_deck_takes_its_time(export: Heun, folder: Path) -> None:
     assert ",FY,1500.0\n" in deck
 
 
-def test_a_distributed_load_stands_at_its_ends(export: Heun) -> None:
-    """q from 30 to 90 N/m along 1 m: 25 and 35 N, as 60 N at 7/12 m; what it is per length beside them."""
+def test_a_distributed_load_stands_along_its_line(export: Heun) -> None:
+    """q from 30 to 90 N/m from 0.5 to 1.5 m: 60 N at 7/12 of it, exact moments at the ends of the pieces; q there."""
     lines = export("beam.yaml").stdout.splitlines()
-    own = [line.split(",")[5:] for line in lines if ",snow," in line]
-    assert [row[:2] + row[-1:] for row in own if row[1] != "moment" and row[1] != "position"] == [
-        ["p", "force", "-25.0"], ["p", "force_per_length", "-30.0"],
-        ["q", "force", "-35.0"], ["q", "force_per_length", "-90.0"],
-    ]  # fmt: skip
+    own = [line.split(",") for line in lines if ",snow," in line]
+    x = np.array([float(row[8]) for row in own if row[6] == "position"])
+    F, q = (np.array([float(row[10]) for row in own if row[6] == of]) for of in ("force", "force_per_length"))
+    assert np.allclose(x, np.linspace(0.5, 1.5, 11)) and np.allclose(q, -np.linspace(30, 90, 11))
+    assert F.sum() == pytest.approx(-60.0) and x @ F == pytest.approx(-60.0 * (0.5 + 7 / 12))
+    middle = ["", "", "", "", "center of mass", "", "", "", ""]
+    for at in x:  # of q = 30 + 60 s, s from 0.5 m on, the moment about a place of what lies beyond it
+        s, beyond = at - 0.5, x >= at
+        exact = 15.0 * (1 - s) ** 2 + 60.0 * ((1 - s**3) / 3 - s * (1 - s**2) / 2)
+        assert (x[beyond] - at) @ F[beyond] == pytest.approx(-exact, abs=1e-12)
+    assert [row[5] for row in own if row[6] == "position"] == ["p", *middle, "q"]
     assert [line.split(",")[5] for line in lines if ",twist," in line] == ["center of mass"] * 3
 
 
