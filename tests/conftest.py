@@ -17,9 +17,10 @@ from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
-# And pictures, pages and reports, which are shown numbers; and additions, which touch no kernel.
+# And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
+# touch no kernel.
 JUDGED, SHOWN = {"closed_forms", "convergence", "honesty", "limits"}, {"browser", "pictures", "reporting", "show"}
-SPARED = {*JUDGED, *SHOWN, "contributing"}
+SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_door"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
 SHARE = 4

@@ -22,6 +22,7 @@ LINES = {  # of others: the spec
     "methods": (), "explain": (), "schema": (), "new": (),
     "diff": ("-", "nosuch.json"), "find": ("-", "bodies.bar.mass=1:2kg", "max joints.pivot.force = 15 N"),
     "sensitivity": ("-", "bodies.bar.mass", "--measure", "max joints.pivot.force"),
+    "export": ("loads", "-", "--at", "last"),
     "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
 }  # fmt: skip
 SWINGING = """\
