@@ -9,10 +9,10 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.attitudes import after, of_roll_pitch_yaw, shifted, turned, turned_tensor
 from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.conversion.names import called, names_of
-from heuncli.conversion.urdf.carriers import GROUND, Placed
-from heuncli.conversion.urdf.coordinates import Coordinates
+from heuncli.conversion.urdf.carriers import GROUND, PlacedLink
+from heuncli.conversion.urdf.coordinates import RobotCoordinates
 from heuncli.conversion.urdf.document import Robot
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.links import Linked, links_of
 from heuncli.conversion.urdf.masses import LinkMass
 from heuncli.conversion.urdf.points import Points
@@ -33,11 +33,11 @@ class JudgedRobot:
     tree: LinkTree
     masses: dict[str, LinkMass]
     shapes: dict[str, tuple[str, tuple[DescribedEntry, ...]]]
-    placed: dict[str, Placed]
+    placed: dict[str, PlacedLink]
     grounded: bool
 
 
-def said(judged: JudgedRobot, asked: ImportAsked, fields: Fields, sha256: str) -> DescribedMachine:
+def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: str) -> DescribedMachine:
     """The machine. Raises SpecError where what was asked for does not go together with the file."""
     carriers = [link.name for link in judged.tree.links if judged.placed[link.name].carrier == link.name]
     bodies = dict(zip(carriers, names_of("link", carriers), strict=True))
@@ -45,7 +45,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: Fields, sha256: str) -
     linked = [*links_of(judged.tree, judged.placed, judged.grounded, points)]
     points.name_all(bodies)
     names = names_of("joint", [one.wanted for one in linked])
-    coordinates = Coordinates(linked, names, judged.tree.followed, asked, fields)
+    coordinates = RobotCoordinates(linked, names, judged.tree.followed, asked, fields)
     if fields.problems:
         raise SpecError(*fields.problems)
     starts = _starts(judged)
@@ -104,7 +104,7 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _told(judged: JudgedRobot, fields: Fields) -> Iterator[str]:
+def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     """What holds for the whole of it."""
     root = judged.tree.root.name
     if not judged.grounded:
