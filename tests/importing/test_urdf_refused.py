@@ -67,7 +67,9 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "quaternion": (
         [*TWO, joint("j", "a", "b", '<origin quat_xyzw="0 0 0 1"/>')], [(4, "import-attribute", "quat_xyzw")],
     ),
-    "unknown part of a joint": ([*TWO, joint("j", "a", "b", '<axes xyz="0 1 0"/>')], [(4, "import-part", "mean axis?")]),
+    "unknown part of a joint": (
+        [*TWO, joint("j", "a", "b", '<axes xyz="0 1 0"/>')], [(4, "import-part", "mean axis?")],
+    ),
     "unknown part of an inertial": (
         [link("a", f'<inertial><mass value="1"/><pose/>{FINE}</inertial>')], [(2, "import-part", "<pose>")],
     ),
@@ -77,7 +79,9 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     ),
     "misspelt part": ([*TWO, joint("j", "a", "b").replace("joint", "jiont")], [(4, "import-part", "mean joint?")]),
     "axis without a direction": ([*TWO, joint("j", "a", "b", "<axis/>")], [(4, "import-missing", "xyz")]),
-    "misspelt limit": ([*TWO, joint("j", "a", "b", '<limit lower="0" uppr="1"/>')], [(4, "import-attribute", "upper?")]),
+    "misspelt limit": (
+        [*TWO, joint("j", "a", "b", '<limit lower="0" uppr="1"/>')], [(4, "import-attribute", "upper?")],
+    ),
     "misspelt damping": ([*TWO, joint("j", "a", "b", '<dynamics dampng="1"/>')], [(4, "import-attribute", "damping?")]),
     "origin twice": ([*TWO, joint("j", "a", "b", "<origin/><origin/>")], [(4, "import-twice", "2 times")]),
     "no numbers": (
@@ -185,7 +189,7 @@ def test_what_does_not_go_with_the_options_is_told(name):
 
 
 def test_what_other_programs_say_is_left_out_and_listed():
-    """Parts and attributes that no number hangs on; what a fixed joint is to follow. A length that cancelled out is 0."""
+    """Parts and attributes that no number hangs on; what a fixed joint is to follow. What cancelled out is 0."""
     inner = '<origin xyz="5.8e-66 0 1"/><dynamics D="1" mu_coulomb="0"/><limit gear_velocity="2" effort="1"/>'
     lines = [
         link("a", f"{BODY}<contact/><collision_checking/>"), link("b"), link("c"),

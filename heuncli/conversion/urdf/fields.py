@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from difflib import get_close_matches
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from heuncli.conversion.attitudes import RIGHT
 from heuncli.conversion.xml_elements import XmlElement
@@ -149,14 +148,17 @@ class UrdfFields:
         return 0.0 if tiny else self.value(element, name, path, word)
 
 
-def alike(given: Iterable[str], known: Collection[str]) -> Iterator[tuple[str, str]]:
+def alike(given: Collection[str], known: Collection[str]) -> Iterator[tuple[str, str]]:
     """What is given and not known, with the known name that it is like, if that is not given, too."""
-    given = list(given)
-    for name in given:
-        if name not in known:
-            for meant in get_close_matches(name, known, 1, ALIKE):
-                if meant not in given:
-                    yield name, meant
+    others = [name for name in given if name not in known]
+    if not others:
+        return
+    from difflib import get_close_matches  # which few files need
+
+    for name in others:
+        for meant in get_close_matches(name, known, 1, ALIKE):
+            if meant not in given:
+                yield name, meant
 
 
 def hint_for(text: str) -> str:
