@@ -15,7 +15,7 @@ from heuncli.conversion.urdf.document import Robot
 from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.links import Linked, links_of
 from heuncli.conversion.urdf.masses import LinkMass
-from heuncli.conversion.urdf.points import Points
+from heuncli.conversion.urdf.points import RobotPoints
 from heuncli.conversion.urdf.tree import LinkTree
 from heuncli.errors import SpecError
 from heuncli.nearest import listed
@@ -41,7 +41,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
     """The machine. Raises SpecError where what was asked for does not go together with the file."""
     carriers = [link.name for link in judged.tree.links if judged.placed[link.name].carrier == link.name]
     bodies = dict(zip(carriers, names_of("link", carriers), strict=True))
-    points = Points()
+    points = RobotPoints()
     linked = [*links_of(judged.tree, judged.placed, judged.grounded, points)]
     points.name_all(bodies)
     names = names_of("joint", [one.wanted for one in linked])
@@ -71,7 +71,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
     )
 
 
-def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict[str, Any]) -> DescribedBody:
+def _body(judged: JudgedRobot, link: str, name: str, points: RobotPoints, start: dict[str, Any]) -> DescribedBody:
     R, remark = judged.placed[link].R, called("link", name, link)
     mass = judged.masses.get(link)
     if mass is None:
@@ -83,7 +83,7 @@ def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict
     return DescribedBody(name, mass.mass, center, inertia, points.of(link), (), start, remark, mass.notes)
 
 
-def _joint(one: Linked, name: str, points: Points, initial: dict[str, Any]) -> DescribedEntry:
+def _joint(one: Linked, name: str, points: RobotPoints, initial: dict[str, Any]) -> DescribedEntry:
     keys = {"type": one.type, "from": points.end(one.from_), "to": points.end(one.to), **one.keys}
     renamed = one.joint is not None and name != one.wanted
     remarks = (f'joint "{one.joint.name}"' if renamed and one.joint is not None else "", *one.remarks)
