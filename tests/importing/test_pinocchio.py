@@ -12,10 +12,12 @@ import numpy as np
 import pytest
 
 from heuncli.results import Results
+from heuncli.spec.load import load
+from heuncli.study.workflow import solve
 from tests.shared.imported_robots import ImportedRobot, imported_robot
-from tests.shared.pinocchio_answers import Answer, Asked, Robot
+from tests.shared.pinocchio_answers import Answer, Asked, Robot, holding_with_mimics
 from tests.shared.scenes import near, solved
-from tests.shared.urdf_texts import SHAPES, Wishes, drawn_robot
+from tests.shared.urdf_texts import MOVING, SHAPES, Wishes, drawn_robot
 
 pytestmark = pytest.mark.heavy
 pytest.importorskip("pinocchio", reason="pinocchio (pip install pin) is not installed")
@@ -124,3 +126,29 @@ def test_what_floats_or_shifts_in_a_plane_goes_on_as_pinocchio_says(first: str) 
     for seed in range(200, 210):
         text = drawn_robot(seed, Wishes(links=10, first=first, bare_root=seed % 2)).text
         same(text, seed)
+
+
+def test_what_is_followed_takes_what_its_followers_take() -> None:
+    """In Pinocchio one coordinate moves a joint and those that mimic it: its effort is theirs by their factors."""
+    wishes = Wishes(links=12, mimics=0.5, kinds={"revolute": 2.0, "prismatic": 1.0, "fixed": 1.0})
+    followed = 0
+    for seed in range(30):
+        drawn = drawn_robot(seed, wishes)
+        leaders = [joint.name for joint in drawn.moving]
+        efforts = holding_with_mimics(drawn.text, seed, leaders)
+        if efforts is None:  # of a tree whose order Pinocchio does not take
+            continue
+        robot = imported_robot(drawn.text)
+        values = {robot.joints[name]: repr(position) for name, (position, _) in efforts.items()}
+        found = solve(load("robot.yaml", robot.text, overrides=values)).results.joints
+        drives = {
+            joint.name: found[robot.joints[joint.name]]["drive"][0] for joint in drawn.joints if joint.kind in MOVING
+        }
+        largest = max(abs(effort) for _, effort in efforts.values())
+        for name, (_, effort) in efforts.items():
+            follow = [
+                (joint.mimic[1], drives[joint.name]) for joint in drawn.joints if joint.mimic and joint.mimic[0] == name
+            ]
+            near(drives[name] + sum(factor * drive for factor, drive in follow), effort, largest + 1.0, DIGITS)
+            followed += len(follow)
+    assert followed > 10

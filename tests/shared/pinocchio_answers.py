@@ -5,7 +5,7 @@ Imports pinocchio where it is asked, not before: a third of a second.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -187,8 +187,18 @@ class Robot:
         return found
 
 
-def version() -> str:
-    """Of the Pinocchio that answers."""
-    import pinocchio
+def holding_with_mimics(text: str, seed: int, leaders: Collection[str]) -> dict[str, tuple[float, float]] | None:
+    """Positions drawn for the joints that follow none, and what holds each with all that follow it; None: not read."""
+    import pinocchio as pin
 
-    return str(pinocchio.__version__)
+    try:
+        model = pin.buildModelFromXML(text, True)
+    except ValueError:
+        return None
+    rng = np.random.default_rng(seed)
+    places = {name: float(rng.uniform(-1, 1)) for name in leaders}
+    q = pin.neutral(model)
+    for name, position in places.items():
+        q[model.joints[model.getJointId(name)].idx_q] = position
+    efforts = pin.rnea(model, model.createData(), q, np.zeros(model.nv), np.zeros(model.nv))
+    return {name: (at, float(efforts[model.joints[model.getJointId(name)].idx_v])) for name, at in places.items()}

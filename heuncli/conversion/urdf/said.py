@@ -67,7 +67,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         stops=coordinates.stops,
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
-        left_out=(*coordinates.left_out, *_undamped(judged, fields)),
+        left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),
     )
 
 
