@@ -128,6 +128,8 @@ def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     if fields.nearly_right:
         what = "taken for right angles (--repair right-angles)" if fields.to_right else "kept as they are"
         yield f"Angles like 1.5708, nearly right ones, are {what}: {listed(fields.nearly_right)}."
+    for link in fields.emptied:
+        yield f'Repaired (massless): the link "{link}" has the mass 0; its inertia is left out.'
     if judged.robot.silent:
         counts = ", ".join(f"{count} {tag}" for tag, count in judged.robot.silent.items())
         yield f"Not taken over, as it says nothing of the mechanics: {counts}."
