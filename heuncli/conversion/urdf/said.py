@@ -57,14 +57,14 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         gravity=GRAVITY,
         bodies=tuple(_body(judged, name, bodies[name], points, starts.get(name, {})) for name in carriers),
         ground=points.of(GROUND),
-        parameters=coordinates.parameters,
+        parameters=tuple(coordinates.parameters),
         joints=tuple(
             _joint(one, name, points, coordinates.initial.get(name, {}))
             for one, name in zip(linked, names, strict=True)
         ),
-        drives=coordinates.drives,
-        forces=coordinates.dampers,
-        stops=coordinates.stops,
+        drives=tuple(coordinates.drives),
+        forces=tuple(coordinates.dampers),
+        stops=tuple(coordinates.stops),
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
         left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),
