@@ -7,8 +7,8 @@ What is left as it is may break this by what heun takes for rounding. A repair c
     negative    moments below 0 become 0
     triangle    A1 and A2 are raised, each by half of A3 - A1 - A2: of all raises the one with the least squares
     zero        a link with a mass and no moment at all is taken for a point mass
-    massless    a link without mass that moves gets a point mass of MASSLESS at its origin; of a mass of 0 the inertia is
-                left out
+    massless    a link without mass that moves gets a point mass of MASSLESS at its origin; a mass of 0 loses its
+                inertia
 """
 
 from __future__ import annotations
