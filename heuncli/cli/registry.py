@@ -75,6 +75,7 @@ COMMANDS = (
     Command("report", folder="reporting", page="pictures"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
+    Command("import", folder="importing", page="importing"),
     Command("methods", page="methods"),
     Command("explain"),
     Command("schema"),

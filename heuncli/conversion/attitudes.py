@@ -29,7 +29,7 @@ def about(axis: int, angle: float) -> Matrix:
     R[axis][axis] = 1.0
     R[i][i] = R[j][j] = c
     R[i][j], R[j][i] = -s, s
-    return tuple(map(tuple, R))  # type: ignore[arg-type]
+    return tuple(map(tuple, R))  # type: ignore[return-value]
 
 
 def of_roll_pitch_yaw(angles: Vec) -> Matrix:
@@ -73,7 +73,7 @@ def turned_tensor(R: Matrix, inertia: Matrix) -> Matrix:
     for i in range(3):
         for j in range(i + 1):
             made[i][j] = made[j][i] = turned_rows[i][j] + 0.0 if exact else digits(turned_rows[i][j], size)
-    return tuple(map(tuple, made))  # type: ignore[arg-type]
+    return tuple(map(tuple, made))  # type: ignore[return-value]
 
 
 def kept(v: Vec) -> Vec:

@@ -35,7 +35,7 @@ class DescribedPoint(NamedTuple):
 
 
 class DescribedEntry(NamedTuple):
-    """An entry of a block (a joint, drive, stop, force; of the list of shapes, without a name): keys as a spec has them.
+    """An entry of a block (a joint, drive, stop, force), or a shape, without a name: keys as a spec has them.
 
     `{"type": "pin", "from": "ground.base", "to": "arm.base", "axis": (0.0, 0.0, 1.0)}`
     """

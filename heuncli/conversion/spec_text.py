@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import shlex
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from typing import Any
 
 from heuncli.conversion.described import (
     DescribedBody,
@@ -17,6 +16,7 @@ from heuncli.conversion.described import (
     DescribedMachine,
     DescribedParameter,
     DescribedPoint,
+    Value,
 )
 from heuncli.foreign_text import shown
 from heuncli.spec.models import Matrix
@@ -39,9 +39,9 @@ def spec_text(machine: DescribedMachine, name: str) -> str:
 def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield f"# heun run {_word(name)}"
     yield "#"
-    yield _comment(f"Made by heun import from {machine.file} ({machine.form}), whose sha256 is")
-    yield _comment(machine.sha256)
     yield from map(_comment, machine.told)
+    yield _comment(f"Made by heun import from {_file(machine.file)}, {machine.form}, sha256")
+    yield _comment(machine.sha256)
     yield "heun: 1 # version of the format; plain numbers are SI"
     yield f"title: {_quoted(_safe(machine.title))}"
     yield ""
@@ -59,6 +59,11 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     ):
         yield from _block(machine, name_, (line for entry in entries for line in _entry(entry)))
     yield from _block(machine, "analysis", (f"  {key}: {_flow(value)}" for key, value in machine.analysis.items()))
+
+
+def _file(name: str) -> str:
+    """A file without its folders, which are nobody else's."""
+    return "standard input" if name == "-" else name.replace("\\", "/").rpartition("/")[2]
 
 
 def _block(machine: DescribedMachine, name: str, content: Iterable[str]) -> Iterator[str]:
@@ -89,7 +94,7 @@ def _body(body: DescribedBody) -> Iterator[str]:
     if body.shapes:
         yield from _with_remark("    shapes:", body.notes.get("shapes", ""))
         for shape in body.shapes:
-            yield from _with_remark(f"      - {_flow(shape.keys)}", shape.remark)
+            yield from _keys("      - ", shape.keys, shape.remark)
     yield from _points(body.points, 4)
     for key, value in body.start.items():
         yield from _with_remark(f"    {key}: {_flow(value)}", body.notes.get(key, ""))
@@ -121,7 +126,24 @@ def _points(points: Sequence[DescribedPoint], indent: int) -> Iterator[str]:
 
 
 def _entry(entry: DescribedEntry) -> Iterator[str]:
-    yield from _with_remark(f"  {entry.name}: {_flow(entry.keys)}", entry.remark)
+    yield from _keys(f"  {entry.name}: ", entry.keys, entry.remark)
+
+
+def _keys(head: str, keys: Mapping[str, Value], remark: str) -> Iterator[str]:
+    """An entry on one line, else a line a key."""
+    line = f"{head}{_flow(keys)}"
+    if len(line) <= WIDEST:
+        yield from _with_remark(line, remark)
+        return
+    inner = " " * (len(head) if head.endswith("- ") else len(head) - len(head.lstrip()) + 2)
+    lines = [f"{inner}{key}: {_flow(value)}" for key, value in keys.items()]
+    if head.endswith("- "):
+        lines[0] = head + lines[0].lstrip()
+        if remark:
+            yield " " * (len(head) - 2) + _comment(remark)
+    else:
+        yield from _with_remark(head.rstrip(), remark)
+    yield from lines
 
 
 def _with_remark(line: str, remark: str) -> Iterator[str]:
@@ -152,7 +174,7 @@ def _word(name: str) -> str:
     return shlex.quote(shown(f"./{name}" if name.startswith("-") and name != "-" else name))
 
 
-def _flow(value: Any) -> str:
+def _flow(value: Value) -> str:
     """A value on one line."""
     if value is None:
         return "null"

@@ -1,0 +1,177 @@
+"""The coordinates of a robot's joints: parameters that hold them by drives, or at which they start where they are free.
+
+A joint that follows another (mimic) is driven by the parameter of that one: position = multiplier * parameter + offset.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from heuncli.conversion.asked import ImportAsked
+from heuncli.conversion.described import DescribedEntry, DescribedParameter
+from heuncli.conversion.names import Namer, called
+from heuncli.conversion.spec_text import number_text
+from heuncli.conversion.urdf.document import UrdfJoint
+from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.links import Linked
+from heuncli.conversion.urdf.tree import Followed
+from heuncli.errors import Problem
+from heuncli.named_tuples import NamedTuple
+
+
+class Quantity(NamedTuple):
+    """The coordinate of a type of joint: its key, where it is 0, its unit, and the key of a friction in it."""
+
+    key: str
+    zero: str
+    unit: str
+    friction: str
+
+
+QUANTITIES = {
+    "pin": Quantity("angle", "0 deg", "rad", "torque"),
+    "slide": Quantity("travel", "0 m", "m", "force"),
+}
+MOST_PLAIN = 9  # whole numbers up to it are factors without a dimension (manual/format.md, "Parameters")
+
+
+class Coordinates:
+    """Parameters, drives, initial values, stops and dampers of the joints of one coordinate."""
+
+    def __init__(
+        self,
+        linked: Sequence[Linked],
+        names: Sequence[str],
+        followed: dict[str, Followed],
+        asked: ImportAsked,
+        fields: Fields,
+    ) -> None:
+        """names: of the joints in the spec. What does not go together is added to the problems of the fields."""
+        self.followed, self.asked, self.fields = followed, asked, fields
+        self.namer = Namer("joint")
+        self.namer.given.update(names)  # a stop shares its name with no joint
+        self.found: dict[str, list[Any]] = {"parameters": [], "drives": [], "dampers": [], "stops": []}
+        self.initial: dict[str, dict[str, Any]] = {}
+        self.left_out: list[Problem] = []
+        pairs = [(one, one.joint, name) for one, name in zip(linked, names, strict=True)]
+        self.single = [(one, joint, name) for one, joint, name in pairs if joint is not None and one.type in QUANTITIES]
+        self.names = {joint.name: name for _, joint, name in self.single}
+        self.types = {joint.name: one.type for one, joint, _ in self.single}
+        for one, joint, name in self.single:
+            self._take(joint, name, QUANTITIES[one.type])
+
+    @property
+    def parameters(self) -> tuple[DescribedParameter, ...]:
+        return tuple(self.found["parameters"])
+
+    @property
+    def drives(self) -> tuple[DescribedEntry, ...]:
+        return tuple(self.found["drives"])
+
+    @property
+    def dampers(self) -> tuple[DescribedEntry, ...]:
+        return tuple(self.found["dampers"])
+
+    @property
+    def stops(self) -> tuple[DescribedEntry, ...]:
+        return tuple(self.found["stops"])
+
+    @property
+    def told(self) -> tuple[str, ...]:
+        """How the joints are moved."""
+        first = next(iter(self.found["parameters"]), None)
+        if first is None:
+            return ()
+        value = first.value.replace("0 deg", "30 deg").replace("0 m", "0.1 m")
+        pose = f'--set {first.name}="{value}"'
+        if self.asked.free:
+            return (f"The joints are free, and start at rest where their parameters say: {pose}",)
+        return (
+            f"Drives hold the joints where their parameters say ({pose}); what they take is told as drive.",
+            "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
+        )
+
+    def _take(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+        follows = self.followed.get(joint.name)
+        if follows is not None:
+            self._follow(joint, name, quantity, follows)
+        else:
+            value = self._start(joint, quantity)
+            remark = "; ".join(filter(None, (called("joint", name, joint.name), self._limits(joint, quantity))))
+            self.found["parameters"].append(DescribedParameter(name, value, remark))
+            if self.asked.free:
+                self.initial[name] = {quantity.key: name}
+            else:
+                self._drive(name, quantity, name, "")
+        if joint.damping:
+            keys = {"type": "damper", "joint": name, "coefficient": joint.damping}
+            self.found["dampers"].append(DescribedEntry(self.namer.name(f"damping_{name}"), keys))
+        if joint.friction:
+            self._leave_friction(joint, name, quantity)
+        if self.asked.limits:
+            self._stop(joint, name, quantity)
+
+    def _drive(self, name: str, quantity: Quantity, value: str, remark: str) -> None:
+        keys = {"joint": name, quantity.key: value}
+        self.found["drives"].append(DescribedEntry(self.namer.name(f"hold_{name}"), keys, remark))
+
+    def _follow(self, joint: UrdfJoint, name: str, quantity: Quantity, follows: Followed) -> None:
+        leader = self.names[follows.leader.name]
+        if self.asked.free:
+            message = f"it follows {follows.leader.name}, which free joints do not"
+            hint = "leave --free out: drives hold them in their ratio"
+            element = joint.mimic.element if joint.mimic is not None else joint.element
+            self.fields.report("import-mimic", element, joint.path, message, hint)
+            return
+        alike = QUANTITIES[self.types[follows.leader.name]] == quantity
+        remark = f"mimic: follows {leader}; its law of time is to be that of hold_{leader}, by this rule"
+        self._drive(name, quantity, ratio(leader, follows.multiplier, follows.offset, alike), remark)
+
+    def _limits(self, joint: UrdfJoint, quantity: Quantity) -> str:
+        if joint.limits is None or joint.kind == "continuous":
+            return ""
+        lower, upper = joint.limits
+        outside = "" if lower <= 0.0 <= upper else "; 0 lies outside"
+        return f"limits {number_text(lower)} to {number_text(upper)} {quantity.unit}{outside}"
+
+    def _start(self, joint: UrdfJoint, quantity: Quantity) -> str:
+        """Where it stands: at 0, or at the nearest limit where stops hold it."""
+        if not self.asked.limits or joint.limits is None or joint.limits[0] <= 0.0 <= joint.limits[1]:
+            return quantity.zero
+        return f"{number_text(min(joint.limits, key=abs))} {quantity.unit}"
+
+    def _stop(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+        if joint.limits is None or joint.kind == "continuous":
+            return
+        lower, upper = joint.limits
+        if lower >= upper:
+            message = f"its limits, {lower:g} to {upper:g}, leave no room"
+            self.fields.report("import-limits", joint.element, joint.path, message, "leave --limits out, or mend them")
+            return
+        keys = {"joint": name, quantity.key: (lower, upper)}
+        self.found["stops"].append(DescribedEntry(self.namer.name(f"limits_{name}"), keys))
+
+    def _leave_friction(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+        law = f"{{type: friction, joint: {name}, {quantity.friction}: {number_text(joint.friction)}, speed: 0.01}}"
+        message = f'friction="{joint.friction:g}" is not taken over'
+        hint = f"a friction has a rate at which it is full: forces: {{friction_{name}: {law}}}"
+        self.left_out.append(self.fields.problem("import-left-out", joint.element, joint.path, message, hint))
+
+
+def ratio(leader: str, multiplier: float, offset: float, alike: bool) -> str:
+    """multiplier * leader + offset; alike: both are angles or both travels, so that a plain factor keeps what it is.
+
+    A number with a point in it may stand for one with a unit: metres a radian.
+    """
+    plain = alike and multiplier == int(multiplier) and abs(multiplier) <= MOST_PLAIN
+    factor = number_text(multiplier) if plain and offset == 0.0 else _with_point(multiplier)
+    product = leader if factor == "1" else f"-{leader}" if factor == "-1" else f"{factor}*{leader}"
+    if offset == 0.0:
+        return product
+    return f"{product} {'-' if offset < 0.0 else '+'} {_with_point(abs(offset))}"
+
+
+def _with_point(value: float) -> str:
+    text = repr(value)
+    return text if "." in text or "e" not in text else text.replace("e", ".0e")

@@ -1,0 +1,129 @@
+"""A judged robot in the words of a spec: links as bodies and points, joints held by drives at their parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+from heuncli.conversion.asked import ImportAsked
+from heuncli.conversion.attitudes import after, of_roll_pitch_yaw, shifted, turned, turned_tensor
+from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
+from heuncli.conversion.names import called, names_of
+from heuncli.conversion.urdf.carriers import GROUND, Placed
+from heuncli.conversion.urdf.coordinates import Coordinates
+from heuncli.conversion.urdf.document import Robot
+from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.links import Linked, links_of
+from heuncli.conversion.urdf.masses import LinkMass
+from heuncli.conversion.urdf.points import Points
+from heuncli.conversion.urdf.tree import LinkTree
+from heuncli.errors import SpecError
+from heuncli.nearest import listed
+from heuncli.records import record
+from heuncli.spec.models import Vec
+
+GRAVITY: Vec = (0.0, 0.0, -9.81)  # URDF has none; z is up in ROS
+
+
+@record
+class JudgedRobot:
+    """A robot in which all is as it must be: masses and shapes of its bodies, and where its links are."""
+
+    robot: Robot
+    tree: LinkTree
+    masses: dict[str, LinkMass]
+    shapes: dict[str, tuple[str, tuple[DescribedEntry, ...]]]
+    placed: dict[str, Placed]
+    grounded: bool
+
+
+def said(judged: JudgedRobot, asked: ImportAsked, fields: Fields, sha256: str) -> DescribedMachine:
+    """The machine. Raises SpecError where what was asked for does not go together with the file."""
+    carriers = [link.name for link in judged.tree.links if judged.placed[link.name].carrier == link.name]
+    bodies = dict(zip(carriers, names_of("link", carriers), strict=True))
+    points = Points()
+    linked = [*links_of(judged.tree, judged.placed, judged.grounded, points)]
+    points.name_all(bodies)
+    names = names_of("joint", [one.wanted for one in linked])
+    coordinates = Coordinates(linked, names, judged.tree.followed, asked, fields)
+    if fields.problems:
+        raise SpecError(*fields.problems)
+    starts = _starts(judged)
+    return DescribedMachine(
+        title=judged.robot.title,
+        form="URDF",
+        file=fields.file,
+        sha256=sha256,
+        gravity=GRAVITY,
+        bodies=tuple(_body(judged, name, bodies[name], points, starts.get(name, {})) for name in carriers),
+        ground=points.of(GROUND),
+        parameters=coordinates.parameters,
+        joints=tuple(
+            _joint(one, name, points, coordinates.initial.get(name, {}))
+            for one, name in zip(linked, names, strict=True)
+        ),
+        drives=coordinates.drives,
+        forces=coordinates.dampers,
+        stops=coordinates.stops,
+        told=(*_told(judged, fields), *coordinates.told),
+        remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
+        left_out=tuple(coordinates.left_out),
+    )
+
+
+def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict[str, Any]) -> DescribedBody:
+    R, remark = judged.placed[link].R, called("link", name, link)
+    mass = judged.masses.get(link)
+    if mass is None:
+        source, shapes = judged.shapes[link]
+        notes = {"shapes": f"of the {source} elements" + (": what overlaps counts twice" if len(shapes) > 1 else "")}
+        return DescribedBody(name, None, None, None, points.of(link), shapes, start, remark, notes)
+    inertia = turned_tensor(after(R, of_roll_pitch_yaw(mass.rpy)), mass.inertia)
+    center = turned(R, mass.center)
+    return DescribedBody(name, mass.mass, center, inertia, points.of(link), (), start, remark, mass.notes)
+
+
+def _joint(one: Linked, name: str, points: Points, initial: dict[str, Any]) -> DescribedEntry:
+    keys = {"type": one.type, "from": points.end(one.from_), "to": points.end(one.to), **one.keys}
+    renamed = one.joint is not None and name != one.wanted
+    remarks = (f'joint "{one.joint.name}"' if renamed and one.joint is not None else "", *one.remarks)
+    return DescribedEntry(name, keys | ({"initial": initial} if initial else {}), "; ".join(filter(None, remarks)))
+
+
+def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
+    """Where bodies start that no joint places: what floats, and what shifts in a plane."""
+    found: dict[str, dict[str, Any]] = {}
+    for link in judged.tree.links:
+        joint, own = judged.tree.above.get(link.name), judged.placed[link.name]
+        x, y, z = own.offset
+        origin = shifted(own.origin, (-x, -y, -z))  # of the body that carries it
+        if (joint is None and not judged.grounded) or (joint is not None and joint.kind == "floating"):
+            found[own.carrier] = {"position": origin}
+        elif joint is not None and joint.kind == "planar":
+            found[own.carrier] = {"near": {"position": origin}}
+    return found
+
+
+def _told(judged: JudgedRobot, fields: Fields) -> Iterator[str]:
+    """What holds for the whole of it."""
+    root = judged.tree.root.name
+    if not judged.grounded:
+        yield f'The root, link "{root}", is free; without --base free it stands on the ground.'
+    elif judged.placed[root].carrier == GROUND:
+        yield f'The root, link "{root}", is the ground.'
+    else:
+        yield f'The root, link "{root}", stands on the ground by a weld, whose load is told as that of a joint.'
+    floating = [link.name for link in judged.tree.links if _kind(judged, link.name) == "floating"]
+    if floating:
+        yield f"Free by joints of type floating: {listed(floating)}."
+    if fields.nearly_right:
+        what = "taken for right angles (--repair right-angles)" if fields.to_right else "kept as they are"
+        yield f"Angles like 1.5708, nearly right ones, are {what}: {listed(fields.nearly_right)}."
+    if judged.robot.silent:
+        counts = ", ".join(f"{count} {tag}" for tag, count in judged.robot.silent.items())
+        yield f"Not taken over, as it says nothing of the mechanics: {counts}."
+
+
+def _kind(judged: JudgedRobot, link: str) -> str:
+    joint = judged.tree.above.get(link)
+    return "" if joint is None else joint.kind

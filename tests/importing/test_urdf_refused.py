@@ -1,0 +1,171 @@
+"""What is wrong with a URDF is told with its place, all of it at once, and nothing is written."""
+
+from __future__ import annotations
+
+import pytest
+
+from heuncli.errors import SpecError
+from tests.shared.imported import imported
+
+FINE = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+BODY = f'<inertial><mass value="1"/>{FINE}</inertial>'
+
+
+def robot(*lines: str) -> str:
+    """A robot whose parts stand from line 2 on."""
+    return "\n".join(["<robot name='r'>", *lines, "</robot>"])
+
+
+def link(name: str, inner: str = BODY) -> str:
+    return f'<link name="{name}">{inner}</link>'
+
+
+def inertia(mass: str, *moments: float) -> str:
+    named = zip(("ixx", "iyy", "izz", "ixy", "ixz", "iyz"), (*moments, 0, 0, 0), strict=False)
+    return f'<inertial><mass value="{mass}"/><inertia {" ".join(f"{k}={str(v)!r}" for k, v in named)}/></inertial>'
+
+
+def joint(name: str, parent: str, child: str, inner: str = "", kind: str = "revolute") -> str:
+    ends = f'<parent link="{parent}"/><child link="{child}"/>'
+    return f'<joint name="{name}" type="{kind}">{ends}{inner}</joint>'
+
+
+TWO = (link("a"), link("b"))
+MIMIC = '<mimic joint="{}" multiplier="2"/>'
+REFUSED = {  # the lines, and of each problem its line, code, and words of message or hint
+    "no links": ([], [(1, "import-tree", "no links")]),
+    "unknown link": ([*TWO, joint("j", "aa", "b")], [(4, "import-tree", "its parent 'aa' is no link")]),
+    "two parents": (
+        [*TWO, link("c"), joint("j", "a", "b"), joint("k", "c", "b")],
+        [(6, "import-tree", "two parents: it is the child of j")],
+    ),
+    "two roots": ([*TWO], [(3, "import-tree", "2 links are nobody's child: a, b")]),
+    "no root": ([*TWO, joint("j", "a", "b"), joint("k", "b", "a")], [(5, "import-tree", "a circle of links")]),
+    "circle beside a root": (
+        [*TWO, link("c"), joint("j", "b", "c"), joint("k", "c", "b")],
+        [(6, "import-tree", "a circle of links: b, c, b")],
+    ),
+    "own child": ([link("a"), joint("j", "a", "a")], [(3, "import-tree", "a circle of links: a, a")]),
+    "name twice": ([link("a"), link("a")], [(3, "import-twice", "first in line 2")]),
+    "joint twice": (
+        [*TWO, joint("j", "a", "b"), joint("j", "a", "b")], [(5, "import-twice", "first in line 4")],
+    ),
+    "no name": (["<link/>", '<link name=" "/>'], [(2, "import-missing", "name"), (3, "import-missing", "empty")]),
+    "no type": ([*TWO, '<joint name="j"><parent link="a"/><child link="b"/></joint>'], [(4, "import-missing", "type")]),
+    "no ends": (
+        [*TWO, '<joint name="j" type="fixed"/>'],
+        [(4, "import-missing", "<parent> is missing"), (4, "import-missing", "<child> is missing")],
+    ),
+    "unknown type": ([*TWO, joint("j", "a", "b", kind="ball")], [(4, "import-joint", "three revolute")]),
+    "axis of nothing": ([*TWO, joint("j", "a", "b", '<axis xyz="0 0 0"/>')], [(4, "import-joint", "axis is 0 0 0")]),
+    "axis of two": ([*TWO, joint("j", "a", "b", '<axis xyz="0 1"/>')], [(4, "import-number", "found 2")]),
+    "comma": ([*TWO, joint("j", "a", "b", '<origin xyz="0,1,2"/>')], [(4, "import-number", "apart by spaces")]),
+    "macro": ([*TWO, joint("j", "a", "b", '<origin xyz="${x} 0 0"/>')], [(4, "import-number", "xacro")]),
+    "xacro": (["<xacro:arm/>"], [(2, "import-xacro", "<xacro:arm> is a macro")]),
+    "unknown part": ([*TWO, joint("j", "a", "b"), "<loop_joint/>"], [(5, "import-part", "<loop_joint>")]),
+    "quaternion": (
+        [*TWO, joint("j", "a", "b", '<origin quat_xyzw="0 0 0 1"/>')], [(4, "import-attribute", "quat_xyzw")],
+    ),
+    "origin twice": ([*TWO, joint("j", "a", "b", "<origin/><origin/>")], [(4, "import-twice", "2 times")]),
+    "no numbers": (
+        [link("a", inertia("heavy", 1, 1, 1)), link("b", inertia("nan", 1, 1, 1)), joint("j", "a", "b")],
+        [(2, "import-number", "heavy is not a number"), (3, "import-number", "nan is not a finite number")],
+    ),
+    "beyond numbers": (
+        [link("a", inertia("1e999", 1, 1, 1)), link("b", inertia("1e-70", 1, 1, 1)), joint("j", "a", "b")],
+        [(2, "import-number", "too large"), (3, "import-number", "too small")],
+    ),
+    "other digits": ([link("a", inertia("1_0", 1, 1, 1))], [(2, "import-number", "1_0 is not a number")]),
+    "half an inertial": (
+        [
+            link("a", '<inertial><mass value="1"/></inertial>'), link("b", f"<inertial>{FINE}</inertial>"),
+            joint("j", "a", "b"),
+        ],
+        [(2, "import-missing", "no <inertia>"), (3, "import-missing", "no <mass>")],
+    ),
+    "half a tensor": (
+        [link("a", '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0"/></inertial>')],
+        [(2, "import-missing", "iyz")],
+    ),
+    "masses": (
+        [link("a", inertia("-1", 1, 1, 1)), link("b", inertia("0", 1, 1, 1)), joint("j", "a", "b")],
+        [(2, "import-mass", "the mass is -1 kg"), (3, "import-mass", "the mass is 0, the inertia is not")],
+    ),
+    "inertias": (
+        [
+            link("a", inertia("1", 0, 0, 0)), link("b", inertia("1", -1, 1, 1)), link("c", inertia("1", 1, 1, 3)),
+            joint("j", "a", "b"), joint("k", "b", "c"),
+        ],
+        [
+            (2, "import-inertia", "all moments are 0"), (3, "import-inertia", "negative: -1, 1, 1"),
+            (4, "import-inertia", "principal moments 1, 1, 3"),
+        ],
+    ),
+    "negative by its products": (
+        [link("a", inertia("1", 1, 1, 1, 2))], [(2, "import-inertia", "negative: -1, 1, 3")],
+    ),
+    "massless between joints": (
+        [link("a"), link("b", ""), link("c"), joint("j", "a", "b"), joint("k", "b", "c")],
+        [(3, "import-massless", "moved by the joint j")],
+    ),
+    "massless at the end": ([link("a"), link("b", ""), joint("j", "a", "b")], [(3, "import-massless", "the joint j")]),
+    "no mass at all": (
+        [link("a", ""), link("b", ""), joint("j", "a", "b", kind="fixed")], [(1, "import-mass", "no link")],
+    ),
+    "mimic of nothing": ([*TWO, joint("j", "a", "b", MIMIC.format("jj"))], [(4, "import-mimic", "no joint")]),
+    "mimic of itself": ([*TWO, joint("j", "a", "b", MIMIC.format("j"))], [(4, "import-mimic", "follows itself")]),
+    "mimics in a circle": (
+        [*TWO, link("c"), joint("j", "a", "b", MIMIC.format("k")), joint("k", "b", "c", MIMIC.format("j"))],
+        [(5, "import-mimic", "follows itself, by j, k")],
+    ),
+    "mimic of a weld": (
+        [*TWO, link("c"), joint("j", "a", "b", kind="fixed"), joint("k", "b", "c", MIMIC.format("j"))],
+        [(6, "import-mimic", "j is fixed")],
+    ),
+    "negative damping": (
+        [*TWO, joint("j", "a", "b", '<dynamics damping="-1"/>')], [(4, "import-joint", "damping is -1")],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", REFUSED)
+def test_what_is_wrong_is_told_with_its_line(name):
+    lines, wanted = REFUSED[name]
+    with pytest.raises(SpecError) as refused:
+        imported(robot(*lines))
+    found = [(each.location.line, each.code) for each in refused.value.problems]
+    for problem, (line, code, words) in zip(refused.value.problems, wanted, strict=False):
+        assert words in f"{problem.message} {problem.hint}", str(problem)
+        assert (problem.location.line, problem.code) == (line, code)
+        assert problem.hint
+    assert len(found) == len(wanted), found
+
+
+ASKED = {  # what goes with no file, with some options
+    "mimic let go": (
+        [*TWO, link("c"), joint("j", "a", "b"), joint("k", "b", "c", MIMIC.format("j"))],
+        {"free": True}, "import-mimic",
+    ),
+    "limits without room": (
+        [*TWO, joint("j", "a", "b", '<limit lower="1" upper="1"/>')], {"free": True, "limits": True}, "import-limits",
+    ),
+    "the world let go": ([link("world"), link("b"), joint("j", "world", "b")], {"base_free": True}, "import-tree"),
+    "a root without mass let go": (
+        [link("a", ""), link("b"), joint("j", "a", "b")], {"base_free": True}, "import-massless",
+    ),
+    "a mesh": (
+        [link("a", '<visual><geometry><mesh filename="a.stl"/></geometry></visual>')],
+        {"density": 1000.0}, "import-shape",
+    ),
+    "a box of nothing": (
+        [link("a", '<visual><geometry><box size="1 0 1"/></geometry></visual>')], {"density": 1000.0}, "import-shape",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ASKED)
+def test_what_does_not_go_with_the_options_is_told(name):
+    lines, asked, code = ASKED[name]
+    with pytest.raises(SpecError) as refused:
+        imported(robot(*lines), **asked)
+    assert [problem.code for problem in refused.value.problems] == [code]

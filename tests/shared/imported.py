@@ -1,0 +1,23 @@
+"""Models as `heun import` says them: the text of the spec, without the command around it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from heuncli.conversion.asked import ImportAsked
+from heuncli.conversion.described import DescribedMachine
+from heuncli.conversion.readers import reader_of
+from heuncli.conversion.spec_text import spec_text
+from heuncli.conversion.xml_elements import read_elements
+
+
+def described(text: str | bytes, **asked: Any) -> DescribedMachine:
+    """The machine of a model."""
+    content = text.encode() if isinstance(text, str) else text
+    root = read_elements(content, "model.xml")
+    return reader_of(root, "model.xml").described(content, "model.xml", root, ImportAsked(**asked), "0" * 64)
+
+
+def imported(text: str | bytes, **asked: Any) -> str:
+    """The spec of a model."""
+    return spec_text(described(text, **asked), "model.yaml")
