@@ -26,7 +26,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import Matrix, Vec
 
 SAME = 1e-6  # of a turn: the digits to which people write quaternions
-NO_COUNTERPART = "no-counterpart"
+LEFT_OUT = "import-left-out"
 SITES = 2  # of a tendon that runs straight
 
 
@@ -62,7 +62,7 @@ def left_out(c: Compiled, kind: str, number: int, why: str, hint: str) -> Proble
     """The problem of a part that has no counterpart in a spec."""
     location, name = c.location(kind, number), c.told(kind, number)
     where = "" if location else f"{c.file}: "
-    return Problem(NO_COUNTERPART, f"{where}{name}: {why}", location, hint)
+    return Problem(LEFT_OUT, f"{where}{name}: {why}", location, hint)
 
 
 class Closer:
@@ -192,6 +192,12 @@ def straight(c: Compiled, tendon: int) -> tuple[int, int] | None:
     return int(model.wrap_objid[first]), int(model.wrap_objid[first + 1])
 
 
+def pointed(value: float) -> str:
+    """A number with a point in it: it may stand for one with a unit (manual/format.md, "Parameters")."""
+    text = repr(float(value))
+    return text if "." in text else text.replace("e", ".0e")
+
+
 def moved(polynomial: tuple[float, ...], argument: str) -> str:
     """The polynomial of an argument, as an expression."""
     return " + ".join(_terms(polynomial, argument)) or "0"
@@ -200,6 +206,6 @@ def moved(polynomial: tuple[float, ...], argument: str) -> str:
 def _terms(polynomial: tuple[float, ...], argument: str) -> Iterator[str]:
     for power, factor in enumerate(polynomial):
         if factor:
-            yield f"{factor!r}" if power == 0 else f"{factor!r}*{argument}" + (f"**{power}" if power > 1 else "")
+            yield pointed(factor) if power == 0 else f"{pointed(factor)}*{argument}" + (f"**{power}" if power > 1 else "")
 
 

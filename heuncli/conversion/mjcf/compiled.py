@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
+from heuncli.conversion.mjcf.named_files import NamedFiles
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.named_tuples import NamedTuple
 
@@ -66,15 +66,16 @@ class Compiled(NamedTuple):
         return bool(self.model.opt.disableflags & bits)
 
 
-def compiled(path: Path, file: str) -> Compiled:
-    """The model of a file. file: what messages call it. Raises SpecError: no mujoco, or what MuJoCo finds wrong."""
+def compiled(content: bytes, file: str, named: NamedFiles) -> Compiled:
+    """The model of a text. file: what messages call it. Raises SpecError: no mujoco, or what MuJoCo finds wrong."""
     mujoco = _package(file)
     warned: list[str] = []
     mujoco.set_mju_user_warning(lambda text: warned.append(str(text)))
     try:
-        spec = mujoco.MjSpec.from_file(str(path))
+        spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
+        spec.modelfiledir = named.folder
         model = spec.compile()
-    except MemoryError:
+    except (MemoryError, SpecError):
         raise
     except Exception as error:  # ValueError mostly; of the bindings also their own kinds
         raise SpecError(_problem(str(error), file)) from None
@@ -86,11 +87,19 @@ def _package(file: str) -> Any:
         import mujoco
     except ImportError:
         message = f"{file} is a model of MuJoCo's, which the package mujoco reads; it is not installed"
-        raise SpecError(Problem("needs-mujoco", message, hint=f"{INSTALL} installs it")) from None
+        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} installs it")) from None
     if not hasattr(mujoco, "MjSpec"):
         message = f"{file}: the package mujoco is of version {mujoco.__version__}; 3.2 is the oldest that is understood"
-        raise SpecError(Problem("needs-mujoco", message, hint=f"{INSTALL} --upgrade"))
+        raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} --upgrade"))
     return mujoco
+
+
+def _text(content: bytes, file: str) -> str:
+    try:
+        return content.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        message = "not in UTF-8, which is what MuJoCo reads"
+        raise SpecError(Problem("not-xml", message, SourceLocation(file, 1, 1), "save it as UTF-8")) from None
 
 
 def _problem(text: str, file: str) -> Problem:
@@ -101,7 +110,7 @@ def _problem(text: str, file: str) -> Problem:
     location = SourceLocation(file, int(found[1]), 1) if found and int(found[1]) > 0 else None
     where = "" if location else f"{file}: "
     return Problem(
-        "bad-mjcf", f"{where}MuJoCo does not compile it: {said}", location, hint="it says so of the file by itself, too"
+        "import-mjcf", f"{where}MuJoCo does not compile it: {said}", location, hint="it says so of the file by itself, too"
     )
 
 

@@ -37,18 +37,18 @@ def joint_loads(c: Compiled, tree: Tree, name: Name) -> Iterator[DescribedEntry]
             yield _spring(step, stiffness, reference - zero(c, step.joint), name)
         if damping and step.kind in {*COORDINATE, "ball"}:
             keys = {"type": "damper", "joint": step.name, "coefficient": damping}
-            yield DescribedEntry(name(f"{step.name}_damper"), keys)
+            yield DescribedEntry(name(f"damping_{step.name}"), keys)
 
 
 def _spring(step: Step, stiffness: float, free: float, name: Name) -> DescribedEntry:
     if step.kind == "pin":
         keys = {"type": "turn_spring", "joint": step.name, "stiffness": stiffness, **({"angle": free} if free else {})}
-        return DescribedEntry(name(f"{step.name}_spring"), keys)
+        return DescribedEntry(name(f"spring_{step.name}"), keys)
     way = f"{step.name}.travel"
     if free:
         way = f"({way} {'-' if free > 0.0 else '+'} {number_text(abs(free))})"
     keys = {"type": "torque", "joint": step.name, "value": f"-{number_text(stiffness)}*{way}"}
-    return DescribedEntry(name(f"{step.name}_spring"), keys, "a spring along the slide")
+    return DescribedEntry(name(f"spring_{step.name}"), keys, "a spring along the slide")
 
 
 def is_tendon_spring(c: Compiled, tendon: int) -> bool:
@@ -88,7 +88,7 @@ def weightless(c: Compiled, frames: Frames, tree: Tree, points: Points, gravity:
         center = points.add(its, "center", frames.place(body, c.model.body_ipos[body]))
         vector = vec(-share * mass * g for g in gravity)
         remark = f"gravcomp {number_text(share)} of {c.told('body', body)}"
-        yield DescribedEntry(name(f"{its}_gravcomp"), {"type": "force", "on": center, "vector": vector}, remark)
+        yield DescribedEntry(name(f"gravcomp_{its}"), {"type": "force", "on": center, "vector": vector}, remark)
 
 
 def stops(c: Compiled, tree: Tree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:
@@ -101,5 +101,5 @@ def stops(c: Compiled, tree: Tree, driven: frozenset[int], name: Name) -> Iterat
         if step.kind in COORDINATE:
             low, high = (float(limit) - zero(c, step.joint) for limit in c.model.jnt_range[step.joint])
             yield DescribedEntry(
-                name(f"{step.name}_limits"), {"joint": step.name, COORDINATE[step.kind]: (low, high)}
+                name(f"limits_{step.name}"), {"joint": step.name, COORDINATE[step.kind]: (low, high)}
             )

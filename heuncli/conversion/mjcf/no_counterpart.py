@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.conversion.mjcf.closings import NO_COUNTERPART
+from heuncli.conversion.mjcf.closings import LEFT_OUT
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.loads import is_tendon_spring
 from heuncli.errors import Problem, SourceLocation
@@ -52,7 +52,7 @@ def _problem(c: Compiled, row: Row, numbers: Iterable[int]) -> Iterator[Problem]
     shown = listed(names[:MOST_NAMES]) + (f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else "")
     location = c.location(row.kind, found[0])
     where = "" if location else f"{c.file}: "
-    yield Problem(NO_COUNTERPART, f"{where}{row.what}: {several} {shown}", location, row.hint)
+    yield Problem(LEFT_OUT, f"{where}{row.what}: {several} {shown}", location, row.hint)
 
 
 def _whole(c: Compiled) -> Iterator[Problem]:
@@ -60,15 +60,15 @@ def _whole(c: Compiled) -> Iterator[Problem]:
     option, place = c.model.opt, SourceLocation(c.file, 1, 1)
     if float(option.density) or float(option.viscosity):
         message = "the forces of a fluid (density, viscosity, wind) are not in a spec"
-        yield Problem(NO_COUNTERPART, message, place, "drag on a point is a force by its velocity: -c*points.tip.vx")
+        yield Problem(LEFT_OUT, message, place, "drag on a point is a force by its velocity: -c*points.tip.vx")
     touching = _touching(c)
     if touching:
         message = f"contacts are not in a spec: {touching} of {c.count('geom')} geoms may touch others"
         hint = "a floor under a point is a force by its place; ends of a joint's range are stops (--limits)"
-        yield Problem(NO_COUNTERPART, message, place, hint)
+        yield Problem(LEFT_OUT, message, place, hint)
     if int(c.model.nplugin):
         message = f"plugins of MuJoCo's ({int(c.model.nplugin)}) have no counterpart in a spec"
-        yield Problem(NO_COUNTERPART, message, place, "say what they do by forces of the spec")
+        yield Problem(LEFT_OUT, message, place, "say what they do by forces of the spec")
 
 
 def _where(c: Compiled, joints: Any, of: Any = True) -> list[int]:
@@ -81,21 +81,23 @@ def _of_type(c: Compiled, *words: str) -> Any:
     return np.isin(np.asarray(c.model.jnt_type), kinds)
 
 
+def _rows_with(values: Any, count: int) -> list[int]:
+    """The rows of an array, one row a part, in which something is not 0; an array that older versions do not have."""
+    if values is None or not count:
+        return []
+    return [int(k) for k in np.flatnonzero((np.asarray(values).reshape(count, -1) != 0).any(axis=1))]
+
+
 def _joints_of_dofs(c: Compiled, values: Any) -> list[int]:
-    """The joints of the rates where an array of them, or of rows of them, is not 0."""
-    array = np.asarray(values)
-    rows = array.reshape(len(array), -1) if len(array) else array.reshape(0, 1)
-    return [int(joint) for joint in np.asarray(c.model.dof_jntid)[(rows != 0).any(axis=1)]]
+    """The joints of the rates for which an array is not 0."""
+    return [int(c.model.dof_jntid[dof]) for dof in _rows_with(values, int(c.model.nv))]
 
 
 def _curved(c: Compiled) -> list[int]:
-    """Joints whose spring or damper is not linear; arrays that older versions do not have."""
-    found: list[int] = []
-    stiff = getattr(c.model, "jnt_stiffnesspoly", None)
-    if stiff is not None:
-        found += [int(k) for k in np.flatnonzero(np.any(np.asarray(stiff).reshape(int(c.model.njnt), -1) != 0, axis=1))]
-    damp = getattr(c.model, "dof_dampingpoly", None)
-    return found + ([] if damp is None else _joints_of_dofs(c, damp))
+    """Joints whose spring or damper is not linear, or gives way."""
+    joints = [getattr(c.model, name, None) for name in ("jnt_stiffnesspoly", "jnt_springyield")]
+    of_springs = [joint for values in joints for joint in _rows_with(values, int(c.model.njnt))]
+    return of_springs + _joints_of_dofs(c, getattr(c.model, "dof_dampingpoly", None))
 
 
 def _free_damped(c: Compiled) -> list[int]:
@@ -129,6 +131,8 @@ def _acting(c: Compiled) -> Iterator[int]:
 def _soft(c: Compiled) -> list[int]:
     """Equalities whose softness was set by hand."""
     n = c.count("equality")
+    if not n:
+        return []
     hard = np.isclose(np.asarray(c.model.eq_solref).reshape(n, -1)[:, :2], DEFAULT_SOLREF).all(axis=1)
     stiff = np.isclose(np.asarray(c.model.eq_solimp).reshape(n, -1)[:, :5], DEFAULT_SOLIMP).all(axis=1)
     return [int(k) for k in np.flatnonzero(~(hard & stiff))]

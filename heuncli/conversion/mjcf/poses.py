@@ -13,10 +13,12 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.conversion.attitudes import shifted
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import Frames, rotation, vec
 from heuncli.conversion.mjcf.tree import FREE, GROUND, Step, Tree
 from heuncli.named_tuples import NamedTuple
+from heuncli.spec.models import ZERO, Vec
 from heuncli.spec.turns import about
 
 
@@ -40,22 +42,22 @@ def poses(c: Compiled, frames: Frames, tree: Tree, q: Any, qd: Any) -> dict[str,
     return made
 
 
-def ends_of(c: Compiled, frames: Frames, step: Step) -> tuple[Any, Any]:
+def sides(c: Compiled, frames: Frames, step: Step) -> tuple[Vec, Vec]:
     """The place of a joint in the bodies before and behind it, axes along the world's at the zero [m].
 
-    Bodies on the same body of MuJoCo's have their origins in common.
+    Bodies that stand for the same one of MuJoCo's have their origins in common.
     """
     model, body = c.model, step.body
-    point = np.zeros(3) if step.joint is None else np.array(frames.direction(body, model.jnt_pos[step.joint]))
+    point = ZERO if step.joint is None else frames.direction(body, model.jnt_pos[step.joint])
     first = step.joint is None or step.joint == int(model.body_jntadr[body])
     if not first:
         return point, point
-    return np.array(frames.place(int(model.body_parentid[body]), model.body_pos[body])) + point, point
+    return shifted(frames.place(int(model.body_parentid[body]), model.body_pos[body]), point), point
 
 
 def _next(c: Compiled, frames: Frames, step: Step, before: Pose, q: Any, qd: Any) -> Pose:
     model, R_C0 = c.model, np.array(frames.attitudes[step.body])
-    before_point, point = ends_of(c, frames, step)
+    before_point, point = (np.array(place) for place in sides(c, frames, step))
     S, sigma, slid, speed = before.S, before.sigma, np.zeros(3), np.zeros(3)
     if step.joint is not None:
         at, rate_at = int(model.jnt_qposadr[step.joint]), int(model.jnt_dofadr[step.joint])
