@@ -5,7 +5,7 @@ then is one joint after another whose rate the equalities and the joints before 
 
     rank [J; e_1; ...; e_k; e] > rank [J; e_1; ...; e_k]      J: rows of the equalities, e_i q' the rate of joint i
 
-joints that an actuator moves first, and of two that are coupled the one that leads.
+those that lead another first, whose drive needs their parameter, then those that an actuator moves.
 """
 
 from __future__ import annotations
@@ -19,7 +19,9 @@ from heuncli.conversion.mjcf.closings import Closings
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.tree import COORDINATE, Tree
 
-OPEN = 1e-6  # of a rate of 1: what is left of it beside all that follows is more than rounding
+# Of a rate of 1, what is left of it beside all that follows from others: those that are well open are taken first, so
+# that none is held which another all but determines.
+OPEN = (0.1, 1e-3, 1e-6)
 
 
 def held(c: Compiled, tree: Tree, closings: Closings, q: Any) -> tuple[int, ...]:
@@ -31,7 +33,7 @@ def held(c: Compiled, tree: Tree, closings: Closings, q: Any) -> tuple[int, ...]
         return tuple(joints)
     leaders = {coupling.master for coupling in closings.couplings}
     moved = set(_moved(c))
-    order = sorted(joints, key=lambda joint: (joint not in moved, joint not in leaders))
+    order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in moved))
     dofs = [int(c.model.jnt_dofadr[joint]) for joint in order]
     return tuple(sorted(order[k] for k in _independent(_rows(c, closings, q), dofs)))
 
@@ -68,12 +70,15 @@ def _independent(J: Any, dofs: Iterable[int]) -> Iterator[int]:
     sizes = np.linalg.norm(J, axis=1)
     rows = J[sizes > 0.0] / sizes[sizes > 0.0, None]
     _, s, V = np.linalg.svd(rows, full_matrices=False) if len(rows) else (0, np.zeros(0), rows)
-    base = V[s > OPEN * max(1.0, s.max(initial=0.0))]
-    for place, dof in enumerate(dofs):
-        left = -base.T @ base[:, dof]
-        left[dof] += 1.0
-        left -= base.T @ (base @ left)
-        size = np.linalg.norm(left)
-        if size > OPEN:
-            yield place
-            base = np.vstack([base, left / size])
+    base = V[s > OPEN[-1] * max(1.0, s.max(initial=0.0))]
+    left = dict(enumerate(dofs))
+    for least in OPEN:
+        for place, dof in list(left.items()):
+            rest = -base.T @ base[:, dof]
+            rest[dof] += 1.0
+            rest -= base.T @ (base @ rest)
+            size = np.linalg.norm(rest)
+            if size > least:
+                yield place
+                base = np.vstack([base, rest / size])
+                del left[place]

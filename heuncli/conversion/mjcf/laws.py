@@ -76,7 +76,8 @@ class _Making:
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
         self.laws[coupling.slave] = _less(law, -zero(c, coupling.slave))
-        self.drive(coupling.slave, law, f"follows by {c.told('equality', coupling.equality)}, as law of its leader")
+        leads = "" if coupling.master is None else f"; of a motion its law is {self.steps[coupling.master].name}'s, by this rule"
+        self.drive(coupling.slave, law, f"{c.told('equality', coupling.equality)}{leads}")
 
     def drive(self, joint: int, law: str, remark: str = "") -> None:
         step = self.steps[joint]

@@ -148,7 +148,7 @@ class _Said:
             yield "MuJoCo stacks joints on one body; here a body without weight stands between any two of them."
         free = [step.child for step in self.tree.steps if step.kind == FREE]
         if free:
-            yield f"Free bodies: {', '.join(free)}."
+            yield f"On no joint of the tree (freejoint): {', '.join(free)}."
         ground = sum(float(model.body_mass[body]) for body, owner in enumerate(self.frames.owners) if owner == 0)
         if ground > 0.0:
             yield f"What does not move is the ground; its {ground:.6g} kg are not in the load on the foundation."
