@@ -73,10 +73,8 @@ def test_loops_close_and_are_driven_as_mujocos_own_rows_and_torques_say(seed):
     mujoco.mj_inverse(model, data)
     driven = [model.joint(str(drive.keys["joint"])).id for drive in machine.drives]
     _, s, V = np.linalg.svd(J)
-    print("S", s, len(driven), model.nv, [model.joint(k).name for k in driven])
     N = V[int((s > 1e-9).sum()) :].T
     G = N @ np.linalg.inv(N[driven])
-    print("G", np.abs(G).max(), "tau", data.qfrc_inverse, "qacc", acceleration, "v", data.qvel, [model.joint(k).name for k in range(model.njnt)])
     found = [results.joints[model.joint(number).name]["drive"][0] for number in driven]
     near(found, G.T @ data.qfrc_inverse, float(np.abs(data.qfrc_inverse).max() * np.abs(G).max()), 1e-9)
 
