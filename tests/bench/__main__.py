@@ -1,8 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
 Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, pictures, reports, pages; each line: what, error, time; memory: megabytes; growth: counts; pages:
-frames a second.
+variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth: counts;
+pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -43,6 +43,7 @@ from tests.bench.figures import figures
 from tests.bench.generated import chain
 from tests.bench.growth import growth
 from tests.bench.honesty import honesty
+from tests.bench.imports import imports
 from tests.bench.lagrange import equations
 from tests.bench.long import long
 from tests.bench.memory import memory
@@ -213,7 +214,8 @@ PARTS = {
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
-    "pictures": pictures, "reports": lambda: reports(median_ms), "pages": pages,
+    "pictures": pictures, "reports": lambda: reports(median_ms),
+    "imports": lambda: imports(median_ms), "pages": pages,
 }  # fmt: skip
 
 if __name__ == "__main__":

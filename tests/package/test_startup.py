@@ -121,10 +121,13 @@ def test_what_is_said_to_be_left_out_exists() -> None:
     assert all(importlib.util.find_spec(name) for name in STRANGE | SHAPED | REDUNDANT | RARE)
 
 
-def test_validate_does_without_numpy() -> None:
+def test_validate_and_import_do_without_numpy() -> None:
     found = loaded("validate", "-", text=CHAIN)
     assert "heuncli.spec.load" in found
-    assert not found & (STRANGE | {"numpy"})
+    assert not found & (STRANGE | {"numpy", "heuncli.conversion"})
+    found = loaded("import", str(ROOT / "specs" / "arm.urdf"))
+    assert "heuncli.conversion.urdf.reader" in found
+    assert not found & (STRANGE | {"numpy", "heuncli.study"})
 
 
 @pytest.mark.parametrize("words", [("--help",), ("run", "--help"), ("--version",), ("explain", "format")])

@@ -21,7 +21,7 @@ from heuncli.spec.turns import IDENTITY
 GROUND = ""  # no name of a link
 
 
-class Placed(NamedTuple):
+class PlacedLink(NamedTuple):
     """A link at the zero of all joints: its attitude and origin in the world; its carrier, and where from that."""
 
     R: Matrix
@@ -32,7 +32,7 @@ class Placed(NamedTuple):
 
 def placed_links(
     tree: LinkTree, attitudes: dict[str, Matrix], massive: Collection[str], grounded: bool
-) -> tuple[dict[str, Placed], list[str]]:
+) -> tuple[dict[str, PlacedLink], list[str]]:
     """Every link; and those without mass that have no carrier, whose group nobody carries.
 
     attitudes: R_WL of every link; massive: the links with mass; grounded: the root stands on the ground.
@@ -47,7 +47,7 @@ def placed_links(
         origin[link.name] = at
     lost = [link.name for link in tree.links if link.name not in carrier]
     placed = {
-        link.name: Placed(attitudes[link.name], origin[link.name], carrier[link.name], offset[link.name])
+        link.name: PlacedLink(attitudes[link.name], origin[link.name], carrier[link.name], offset[link.name])
         for link in tree.links
         if link.name in carrier
     }

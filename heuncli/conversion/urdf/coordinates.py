@@ -13,14 +13,14 @@ from heuncli.conversion.described import DescribedEntry, DescribedParameter
 from heuncli.conversion.names import Namer, called
 from heuncli.conversion.spec_text import number_text
 from heuncli.conversion.urdf.document import UrdfJoint
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.links import Linked
 from heuncli.conversion.urdf.tree import Followed
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
 
 
-class Quantity(NamedTuple):
+class JointQuantity(NamedTuple):
     """The coordinate of a type of joint: its key, where it is 0, its unit, and the key of a friction in it."""
 
     key: str
@@ -30,13 +30,13 @@ class Quantity(NamedTuple):
 
 
 QUANTITIES = {
-    "pin": Quantity("angle", "0 deg", "rad", "torque"),
-    "slide": Quantity("travel", "0 m", "m", "force"),
+    "pin": JointQuantity("angle", "0 deg", "rad", "torque"),
+    "slide": JointQuantity("travel", "0 m", "m", "force"),
 }
 MOST_PLAIN = 9  # whole numbers up to it are factors without a dimension (manual/format.md, "Parameters")
 
 
-class Coordinates:
+class RobotCoordinates:
     """Parameters, drives, initial values, stops and dampers of the joints of one coordinate."""
 
     def __init__(
@@ -45,7 +45,7 @@ class Coordinates:
         names: Sequence[str],
         followed: dict[str, Followed],
         asked: ImportAsked,
-        fields: Fields,
+        fields: UrdfFields,
     ) -> None:
         """names: of the joints in the spec. What does not go together is added to the problems of the fields."""
         self.followed, self.asked, self.fields = followed, asked, fields
@@ -92,7 +92,7 @@ class Coordinates:
             "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
         )
 
-    def _take(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+    def _take(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         follows = self.followed.get(joint.name)
         if follows is not None:
             self._follow(joint, name, quantity, follows)
@@ -112,11 +112,11 @@ class Coordinates:
         if self.asked.limits:
             self._stop(joint, name, quantity)
 
-    def _drive(self, name: str, quantity: Quantity, value: str, remark: str) -> None:
+    def _drive(self, name: str, quantity: JointQuantity, value: str, remark: str) -> None:
         keys = {"joint": name, quantity.key: value}
         self.found["drives"].append(DescribedEntry(self.namer.name(f"hold_{name}"), keys, remark))
 
-    def _follow(self, joint: UrdfJoint, name: str, quantity: Quantity, follows: Followed) -> None:
+    def _follow(self, joint: UrdfJoint, name: str, quantity: JointQuantity, follows: Followed) -> None:
         leader = self.names[follows.leader.name]
         if self.asked.free:
             message = f"it follows {follows.leader.name}, which free joints do not"
@@ -128,20 +128,20 @@ class Coordinates:
         remark = f"mimic: follows {leader}; its law of time is to be that of hold_{leader}, by this rule"
         self._drive(name, quantity, ratio(leader, follows.multiplier, follows.offset, alike), remark)
 
-    def _limits(self, joint: UrdfJoint, quantity: Quantity) -> str:
+    def _limits(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
         if joint.limits is None or joint.kind == "continuous":
             return ""
         lower, upper = joint.limits
         outside = "" if lower <= 0.0 <= upper else "; 0 lies outside"
         return f"limits {number_text(lower)} to {number_text(upper)} {quantity.unit}{outside}"
 
-    def _start(self, joint: UrdfJoint, quantity: Quantity) -> str:
+    def _start(self, joint: UrdfJoint, quantity: JointQuantity) -> str:
         """Where it stands: at 0, or at the nearest limit where stops hold it."""
         if not self.asked.limits or joint.limits is None or joint.limits[0] <= 0.0 <= joint.limits[1]:
             return quantity.zero
         return f"{number_text(min(joint.limits, key=abs))} {quantity.unit}"
 
-    def _stop(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+    def _stop(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         if joint.limits is None or joint.kind == "continuous":
             return
         lower, upper = joint.limits
@@ -152,7 +152,7 @@ class Coordinates:
         keys = {"joint": name, quantity.key: (lower, upper)}
         self.found["stops"].append(DescribedEntry(self.namer.name(f"limits_{name}"), keys))
 
-    def _leave_friction(self, joint: UrdfJoint, name: str, quantity: Quantity) -> None:
+    def _leave_friction(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {number_text(joint.friction)}, speed: 0.01}}"
         message = f'friction="{joint.friction:g}" is not taken over'
         hint = f"a friction has a rate at which it is full: forces: {{friction_{name}: {law}}}"

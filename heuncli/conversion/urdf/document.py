@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from heuncli.conversion.urdf.fields import XACRO, Fields
+from heuncli.conversion.urdf.fields import XACRO, UrdfFields
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.errors import SpecError
 from heuncli.named_tuples import NamedTuple
@@ -22,7 +22,7 @@ SILENT = frozenset({"material", "gazebo", "transmission", "sensor", "plugin", "r
 OTHER_KINDS = "known: " + ", ".join(KINDS) + "; a ball joint is three revolute ones with links between"
 
 
-class Pose(NamedTuple):
+class LinkPose(NamedTuple):
     """Where one frame stands in another: x, y, z [m]; roll, pitch, yaw [rad] about its fixed axes."""
 
     xyz: Vec = ZERO
@@ -34,12 +34,12 @@ class Inertial(NamedTuple):
 
     element: XmlElement
     mass: float
-    pose: Pose
+    pose: LinkPose
     moments: tuple[float, ...]
 
 
 @record
-class Link:
+class UrdfLink:
     """A link; geometries: its visual and collision elements."""
 
     name: str
@@ -72,7 +72,7 @@ class UrdfJoint:
     kind: str
     parent: str
     child: str
-    pose: Pose
+    pose: LinkPose
     axis: Vec
     limits: tuple[float, float] | None = None
     effort: float | None = None
@@ -103,16 +103,16 @@ class Robot:
 
     element: XmlElement
     title: str
-    links: dict[str, Link]
+    links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
     silent: dict[str, int]
     whole: bool
 
 
-def robot_of(root: XmlElement, fields: Fields) -> Robot:
+def robot_of(root: XmlElement, fields: UrdfFields) -> Robot:
     """The robot of a file; what is wrong is added to the problems. Raises SpecError for what is no robot at all."""
     _require_plain(root, fields)
-    links: dict[str, Link] = {}
+    links: dict[str, UrdfLink] = {}
     joints: dict[str, UrdfJoint] = {}
     silent: Counter[str] = Counter()
     for element in root.inner:
@@ -134,7 +134,7 @@ def robot_of(root: XmlElement, fields: Fields) -> Robot:
     return Robot(root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(silent), whole)
 
 
-def _require_plain(root: XmlElement, fields: Fields) -> None:
+def _require_plain(root: XmlElement, fields: UrdfFields) -> None:
     """Raise SpecError for macros that are not expanded, and for what is too large."""
     macro = next((element for element in root.inner if element.tag.startswith("xacro:")), None)
     if macro is not None:
@@ -145,7 +145,7 @@ def _require_plain(root: XmlElement, fields: Fields) -> None:
         raise SpecError(fields.problem("too-large", root, "", message, "split the robot"))
 
 
-def _is_new(found: Link | UrdfJoint, known: dict[str, Link] | dict[str, UrdfJoint], fields: Fields) -> bool:
+def _is_new(found: UrdfLink | UrdfJoint, known: dict[str, UrdfLink] | dict[str, UrdfJoint], fields: UrdfFields) -> bool:
     first = known.get(found.name)
     if first is not None:
         message = f"the name is taken, first in line {first.element.line}"
@@ -153,15 +153,15 @@ def _is_new(found: Link | UrdfJoint, known: dict[str, Link] | dict[str, UrdfJoin
     return first is None
 
 
-def _link(element: XmlElement, fields: Fields) -> Link | None:
+def _link(element: XmlElement, fields: UrdfFields) -> UrdfLink | None:
     name = fields.word(element, "name", "link")
     if name is None:
         return None
     inertial = fields.one(element, "inertial", f"link {name}")
-    return Link(name, element, None if inertial is None else _inertial(inertial, f"link {name}", fields))
+    return UrdfLink(name, element, None if inertial is None else _inertial(inertial, f"link {name}", fields))
 
 
-def _inertial(element: XmlElement, path: str, fields: Fields) -> Inertial | None:
+def _inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inertial | None:
     """None where something of it is wrong, which is then a problem."""
     parts = {tag: fields.one(element, tag, path) for tag in ("mass", "inertia")}
     for tag, part in parts.items():
@@ -181,16 +181,16 @@ def _inertial(element: XmlElement, path: str, fields: Fields) -> Inertial | None
     return Inertial(inertia_part, mass, pose, tuple(value for value in moments if value is not None))
 
 
-def pose_of(element: XmlElement, path: str, fields: Fields) -> Pose | None:
+def pose_of(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | None:
     """The pose of its <origin>; None where it is wrong."""
     origin = fields.one(element, "origin", path)
     if origin is not None:
         fields.known(origin, path, "xyz", "rpy")
     xyz, rpy = (fields.vector(origin, name, path, ZERO) for name in ("xyz", "rpy"))
-    return None if xyz is None or rpy is None else Pose(xyz, fields.angles(rpy, path))
+    return None if xyz is None or rpy is None else LinkPose(xyz, fields.angles(rpy, path))
 
 
-def _joint(element: XmlElement, fields: Fields) -> UrdfJoint | None:
+def _joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
     name = fields.word(element, "name", "joint")
     path = f"joint {name}" if name is not None else "joint"
     kind = fields.word(element, "type", path)
@@ -214,7 +214,7 @@ def _joint(element: XmlElement, fields: Fields) -> UrdfJoint | None:
     return UrdfJoint(name, element, kind, parent, child, pose, axis, limits, effort, mimic, damping, friction)
 
 
-def _end(element: XmlElement, tag: str, path: str, fields: Fields) -> str | None:
+def _end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | None:
     part = fields.one(element, tag, path)
     if part is None:
         fields.report("import-missing", element, path, f"<{tag}> is missing", f'as <{tag} link="..."/>')
@@ -222,7 +222,7 @@ def _end(element: XmlElement, tag: str, path: str, fields: Fields) -> str | None
     return fields.word(part, "link", path)
 
 
-def _mimic(element: XmlElement, path: str, fields: Fields) -> Mimic | None:
+def _mimic(element: XmlElement, path: str, fields: UrdfFields) -> Mimic | None:
     part = fields.one(element, "mimic", path)
     if part is None:
         return None
@@ -233,7 +233,7 @@ def _mimic(element: XmlElement, path: str, fields: Fields) -> Mimic | None:
     return None if joint is None or multiplier is None or offset is None else Mimic(part, joint, multiplier, offset)
 
 
-def _limits(element: XmlElement, path: str, fields: Fields) -> tuple[tuple[float, float] | None, float | None]:
+def _limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple[float, float] | None, float | None]:
     """Lower and upper limit, 0 where one alone is left out, and the effort."""
     part = fields.one(element, "limit", path)
     if part is None:
@@ -245,7 +245,7 @@ def _limits(element: XmlElement, path: str, fields: Fields) -> tuple[tuple[float
     return (None if lower is None or upper is None else (lower, upper)), effort
 
 
-def _dynamics(element: XmlElement, path: str, fields: Fields) -> tuple[float, float]:
+def _dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[float, float]:
     part = fields.one(element, "dynamics", path)
     if part is None:
         return 0.0, 0.0

@@ -19,7 +19,7 @@ XACRO = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
 NEARLY_RIGHT = 1e-3  # [rad] 1.57 is nearer to a right angle, and what is meant to be another is farther
 
 
-class Fields:
+class UrdfFields:
     """Reads elements of one file; what is wrong with them is added to `problems`, and reading goes on."""
 
     def __init__(self, file: str, to_right: bool = False) -> None:

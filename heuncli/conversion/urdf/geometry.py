@@ -10,8 +10,8 @@ from typing import Any
 
 from heuncli.conversion.attitudes import after, is_right, kept, of_roll_pitch_yaw, shifted, turned
 from heuncli.conversion.described import DescribedEntry
-from heuncli.conversion.urdf.document import Link, pose_of
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.document import UrdfLink, pose_of
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.spec.models import Matrix, Vec
 
@@ -19,7 +19,7 @@ SOURCES = ("collision", "visual")
 MEASURES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}
 
 
-def shapes_of(link: Link, R: Matrix, density: float, fields: Fields) -> tuple[str, tuple[DescribedEntry, ...]]:
+def shapes_of(link: UrdfLink, R: Matrix, density: float, fields: UrdfFields) -> tuple[str, tuple[DescribedEntry, ...]]:
     """Which elements they are of, and the shapes, along the world's axes; none, and problems, of what is no shape.
 
     R: the attitude of the link with every joint at 0. A link without geometry has no shapes, and that is no problem.
@@ -41,7 +41,7 @@ def _form(element: XmlElement) -> XmlElement | None:
     return parts[0] if len(parts) == 1 and parts[0].tag in MEASURES else None
 
 
-def _shape(element: XmlElement, R: Matrix, density: float, link: Link, fields: Fields) -> DescribedEntry | None:
+def _shape(element: XmlElement, R: Matrix, density: float, link: UrdfLink, fields: UrdfFields) -> DescribedEntry | None:
     form, pose = _form(element), pose_of(element, link.path, fields)
     if form is None:
         parts = [part.tag for geometry in element.all("geometry") for part in geometry.inner]
@@ -72,7 +72,7 @@ def _keys(form: str, center: Vec, attitude: Matrix, sizes: tuple[float, ...]) ->
     return {"type": "box", "center": center, "size": sizes, "orientation": {"matrix": rows}}
 
 
-def _sizes(form: XmlElement, link: Link, fields: Fields) -> tuple[float, ...] | None:
+def _sizes(form: XmlElement, link: UrdfLink, fields: UrdfFields) -> tuple[float, ...] | None:
     """Its measures [m], all above 0; None where they are wrong."""
     values: list[float] = []
     for name in MEASURES[form.tag]:

@@ -12,9 +12,9 @@ from itertools import islice
 from typing import Any
 
 from heuncli.conversion.attitudes import kept, shifted, turned
-from heuncli.conversion.urdf.carriers import GROUND, Placed
+from heuncli.conversion.urdf.carriers import GROUND, PlacedLink
 from heuncli.conversion.urdf.document import UrdfJoint
-from heuncli.conversion.urdf.points import PointKey, Points
+from heuncli.conversion.urdf.points import PointKey, RobotPoints
 from heuncli.conversion.urdf.tree import LinkTree
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import ZERO, Vec
@@ -36,7 +36,7 @@ class Linked(NamedTuple):
     joint: UrdfJoint | None = None
 
 
-def links_of(tree: LinkTree, placed: dict[str, Placed], grounded: bool, points: Points) -> Iterator[Linked]:
+def links_of(tree: LinkTree, placed: dict[str, PlacedLink], grounded: bool, points: RobotPoints) -> Iterator[Linked]:
     """Every joint of the spec; its points are added to those of the bodies."""
     root = tree.root.name
     if grounded and placed[root].carrier == root:
@@ -53,7 +53,7 @@ def links_of(tree: LinkTree, placed: dict[str, Placed], grounded: bool, points: 
             yield from _linked(joint, place, own, parent.carrier, points)
 
 
-def _linked(joint: UrdfJoint, place: Vec, own: Placed, parent: str, points: Points) -> Iterator[Linked]:
+def _linked(joint: UrdfJoint, place: Vec, own: PlacedLink, parent: str, points: RobotPoints) -> Iterator[Linked]:
     """The joint, or the joints, that it is. place: its origin from that of the carrier of its parent."""
     start = points.add(parent, "joint", joint.name, place)
     end = points.add(own.carrier, "joint", joint.name, own.offset)

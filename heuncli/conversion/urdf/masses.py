@@ -15,8 +15,8 @@ from __future__ import annotations
 from heuncli import tolerances
 from heuncli.conversion.attitudes import digits
 from heuncli.conversion.spec_text import number_text
-from heuncli.conversion.urdf.document import Inertial, Link
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.document import Inertial, UrdfLink
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import ZERO, Matrix, Vec
 from heuncli.spec.turns import principal
@@ -34,7 +34,7 @@ class LinkMass(NamedTuple):
     notes: dict[str, str]
 
 
-def mass_of(link: Link, repair: frozenset[str], fields: Fields) -> LinkMass | None:
+def mass_of(link: UrdfLink, repair: frozenset[str], fields: UrdfFields) -> LinkMass | None:
     """The mass properties of a link; None where it has none, or where they are wrong, which is then a problem."""
     given = link.inertial
     if given is None or (given.mass == 0.0 and not any(given.moments)):
@@ -54,7 +54,7 @@ def mass_of(link: Link, repair: frozenset[str], fields: Fields) -> LinkMass | No
 class _Judged:
     """The inertia of one link on its way through the three faults that it may have."""
 
-    def __init__(self, link: Link, given: Inertial, repair: frozenset[str], fields: Fields) -> None:
+    def __init__(self, link: UrdfLink, given: Inertial, repair: frozenset[str], fields: UrdfFields) -> None:
         self.link, self.given, self.repair, self.fields = link, given, repair, fields
         self.inertia = _tensor(given.moments)
         self.repaired: list[str] = []
@@ -135,7 +135,7 @@ def _listed(moments: Vec) -> str:
     return ", ".join(number_text(float(f"{moment:.6g}")) for moment in moments)
 
 
-def without_mass(link: Link) -> LinkMass:
+def without_mass(link: UrdfLink) -> LinkMass:
     """What a link without mass is given where `massless` is repaired."""
     told = "has no mass" if link.inertial is None else "has the mass 0"
     notes = {"mass": f"repaired (massless): the link {told} in the file"}

@@ -18,7 +18,7 @@ class PointKey(NamedTuple):
     number: int
 
 
-class Points:
+class RobotPoints:
     """The points of one machine; kinds of names: `joint`, `link`."""
 
     def __init__(self) -> None:

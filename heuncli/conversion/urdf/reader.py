@@ -6,7 +6,7 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedMachine
 from heuncli.conversion.urdf.carriers import attitudes_of, heads_of, placed_links
 from heuncli.conversion.urdf.document import Robot, robot_of
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.geometry import shapes_of
 from heuncli.conversion.urdf.masses import LinkMass, mass_of, without_mass
 from heuncli.conversion.urdf.said import JudgedRobot, said
@@ -22,7 +22,7 @@ MASSES_HINT = "give it an <inertial>; --density fills boxes, cylinders and spher
 
 def described(_content: bytes, file: str, root: XmlElement, asked: ImportAsked, sha256: str) -> DescribedMachine:
     """The machine that a URDF describes. Raises SpecError with all problems, in the order of the lines."""
-    fields = Fields(file, "right-angles" in asked.repair)
+    fields = UrdfFields(file, "right-angles" in asked.repair)
     robot = robot_of(root, fields)
     tree = tree_of(robot, fields)
     masses = {name: mass_of(link, asked.repair, fields) for name, link in robot.links.items()}
@@ -34,7 +34,7 @@ def described(_content: bytes, file: str, root: XmlElement, asked: ImportAsked, 
 
 
 def _judged(
-    robot: Robot, tree: LinkTree, masses: dict[str, LinkMass], asked: ImportAsked, fields: Fields
+    robot: Robot, tree: LinkTree, masses: dict[str, LinkMass], asked: ImportAsked, fields: UrdfFields
 ) -> JudgedRobot | None:
     """The robot with all that is found out of it; None, and problems, where it is no machine."""
     attitudes = attitudes_of(tree)
@@ -58,7 +58,7 @@ def _judged(
     return None if fields.problems else JudgedRobot(robot, tree, masses, shapes, placed, grounded)
 
 
-def _report_lost(unborne: list[str], robot: Robot, tree: LinkTree, fields: Fields) -> None:
+def _report_lost(unborne: list[str], robot: Robot, tree: LinkTree, fields: UrdfFields) -> None:
     """Links without mass that no body carries."""
     for name in unborne:
         joint = tree.above.get(name)
@@ -69,7 +69,7 @@ def _report_lost(unborne: list[str], robot: Robot, tree: LinkTree, fields: Field
 
 
 def _shapes(
-    tree: LinkTree, attitudes: dict[str, Matrix], masses: dict[str, LinkMass], asked: ImportAsked, fields: Fields
+    tree: LinkTree, attitudes: dict[str, Matrix], masses: dict[str, LinkMass], asked: ImportAsked, fields: UrdfFields
 ) -> dict[str, tuple[str, tuple[DescribedEntry, ...]]]:
     """Shapes of links without mass, where a density was given; and of which elements they are."""
     if asked.density is None:

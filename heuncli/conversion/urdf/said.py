@@ -9,13 +9,13 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.attitudes import after, of_roll_pitch_yaw, shifted, turned, turned_tensor
 from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.conversion.names import called, names_of
-from heuncli.conversion.urdf.carriers import GROUND, Placed
-from heuncli.conversion.urdf.coordinates import Coordinates
+from heuncli.conversion.urdf.carriers import GROUND, PlacedLink
+from heuncli.conversion.urdf.coordinates import RobotCoordinates
 from heuncli.conversion.urdf.document import Robot
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.links import Linked, links_of
 from heuncli.conversion.urdf.masses import LinkMass
-from heuncli.conversion.urdf.points import Points
+from heuncli.conversion.urdf.points import RobotPoints
 from heuncli.conversion.urdf.tree import LinkTree
 from heuncli.errors import SpecError
 from heuncli.nearest import listed
@@ -33,19 +33,19 @@ class JudgedRobot:
     tree: LinkTree
     masses: dict[str, LinkMass]
     shapes: dict[str, tuple[str, tuple[DescribedEntry, ...]]]
-    placed: dict[str, Placed]
+    placed: dict[str, PlacedLink]
     grounded: bool
 
 
-def said(judged: JudgedRobot, asked: ImportAsked, fields: Fields, sha256: str) -> DescribedMachine:
+def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: str) -> DescribedMachine:
     """The machine. Raises SpecError where what was asked for does not go together with the file."""
     carriers = [link.name for link in judged.tree.links if judged.placed[link.name].carrier == link.name]
     bodies = dict(zip(carriers, names_of("link", carriers), strict=True))
-    points = Points()
+    points = RobotPoints()
     linked = [*links_of(judged.tree, judged.placed, judged.grounded, points)]
     points.name_all(bodies)
     names = names_of("joint", [one.wanted for one in linked])
-    coordinates = Coordinates(linked, names, judged.tree.followed, asked, fields)
+    coordinates = RobotCoordinates(linked, names, judged.tree.followed, asked, fields)
     if fields.problems:
         raise SpecError(*fields.problems)
     starts = _starts(judged)
@@ -71,7 +71,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: Fields, sha256: str) -
     )
 
 
-def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict[str, Any]) -> DescribedBody:
+def _body(judged: JudgedRobot, link: str, name: str, points: RobotPoints, start: dict[str, Any]) -> DescribedBody:
     R, remark = judged.placed[link].R, called("link", name, link)
     mass = judged.masses.get(link)
     if mass is None:
@@ -83,7 +83,7 @@ def _body(judged: JudgedRobot, link: str, name: str, points: Points, start: dict
     return DescribedBody(name, mass.mass, center, inertia, points.of(link), (), start, remark, mass.notes)
 
 
-def _joint(one: Linked, name: str, points: Points, initial: dict[str, Any]) -> DescribedEntry:
+def _joint(one: Linked, name: str, points: RobotPoints, initial: dict[str, Any]) -> DescribedEntry:
     keys = {"type": one.type, "from": points.end(one.from_), "to": points.end(one.to), **one.keys}
     renamed = one.joint is not None and name != one.wanted
     remarks = (f'joint "{one.joint.name}"' if renamed and one.joint is not None else "", *one.remarks)
@@ -104,7 +104,7 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
     return found
 
 
-def _told(judged: JudgedRobot, fields: Fields) -> Iterator[str]:
+def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     """What holds for the whole of it."""
     root = judged.tree.root.name
     if not judged.grounded:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from heuncli.conversion.urdf.document import Link, Mimic, Robot, UrdfJoint
-from heuncli.conversion.urdf.fields import Fields
+from heuncli.conversion.urdf.document import Mimic, Robot, UrdfJoint, UrdfLink
+from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean, listed
 
@@ -24,16 +24,16 @@ class LinkTree(NamedTuple):
     followed: of every joint that follows another, by its name, what it follows in the end.
     """
 
-    links: list[Link]
+    links: list[UrdfLink]
     above: dict[str, UrdfJoint]
     followed: dict[str, Followed]
 
     @property
-    def root(self) -> Link:
+    def root(self) -> UrdfLink:
         return self.links[0]
 
 
-def tree_of(robot: Robot, fields: Fields) -> LinkTree | None:
+def tree_of(robot: Robot, fields: UrdfFields) -> LinkTree | None:
     """The tree; None, and problems, where links and joints make none."""
     before = len(fields.problems)
     above = _carried(robot, fields)
@@ -57,7 +57,7 @@ def tree_of(robot: Robot, fields: Fields) -> LinkTree | None:
     return LinkTree([*order.values()], above, followed) if len(fields.problems) == before else None
 
 
-def _carried(robot: Robot, fields: Fields) -> dict[str, UrdfJoint]:
+def _carried(robot: Robot, fields: UrdfFields) -> dict[str, UrdfJoint]:
     """The joint of which each link is the child; what leads to no link, and second parents, are problems."""
     above: dict[str, UrdfJoint] = {}
     for joint in robot.joints.values():
@@ -74,7 +74,7 @@ def _carried(robot: Robot, fields: Fields) -> dict[str, UrdfJoint]:
     return above
 
 
-def _outward(robot: Robot, above: dict[str, UrdfJoint], roots: Iterable[Link]) -> dict[str, Link]:
+def _outward(robot: Robot, above: dict[str, UrdfJoint], roots: Iterable[UrdfLink]) -> dict[str, UrdfLink]:
     """The links that are reached from the roots, each behind its parent."""
     below: dict[str, list[str]] = {}
     for name, joint in above.items():
@@ -88,7 +88,7 @@ def _outward(robot: Robot, above: dict[str, UrdfJoint], roots: Iterable[Link]) -
     return order
 
 
-def _report_circle(start: Link, above: dict[str, UrdfJoint], fields: Fields) -> None:
+def _report_circle(start: UrdfLink, above: dict[str, UrdfJoint], fields: UrdfFields) -> None:
     """A circle that is come upon from a link that no root leads to, going from child to parent."""
     seen: dict[str, UrdfJoint] = {}
     name = start.name
@@ -103,7 +103,7 @@ def _report_circle(start: Link, above: dict[str, UrdfJoint], fields: Fields) -> 
     fields.report("import-tree", joint.element, joint.path, message, hint)
 
 
-def _followed(robot: Robot, fields: Fields) -> dict[str, Followed]:
+def _followed(robot: Robot, fields: UrdfFields) -> dict[str, Followed]:
     """Of every joint that follows another the one that leads the chain; chains of any length, each walked once."""
     known: dict[str, Followed | None] = {}
     for joint in robot.joints.values():
@@ -126,7 +126,7 @@ def _followed(robot: Robot, fields: Fields) -> dict[str, Followed]:
     return {name: found for name, found in known.items() if found is not None}
 
 
-def _leader(joint: UrdfJoint, mimic: Mimic, robot: Robot, fields: Fields) -> UrdfJoint | None:
+def _leader(joint: UrdfJoint, mimic: Mimic, robot: Robot, fields: UrdfFields) -> UrdfJoint | None:
     """The joint that this one names; None, and a problem, where it is none or has no position of one number."""
     leader = robot.joints.get(mimic.joint)
     if leader is None:
