@@ -1,13 +1,13 @@
 """The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
-limited by a stop is never cut. Next come the joints of a body without a mass to speak of, which only passes on what they
-carry: cut off from what is behind it, roundings would throw it about. Then what leaves nothing free, so that bodies
-welded together hang on each other and only circles of welds are cut. Joints that leave a thin body free to turn about
-the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of one layer
-those that make most conditions are kept.
-`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six
-freedoms of its own.
+limited by a stop is never cut. Next come the joints of a body without a mass to speak of, which only passes on what
+they carry: cut off from what is behind it, roundings would throw it about. Then what leaves nothing free, so that
+bodies welded together hang on each other and only circles of welds are cut. Joints that leave a thin body free to
+turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
+one layer those that make most conditions are kept.
+`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on
+six freedoms of its own.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Random models of MuJoCo's, imported: their torques are those of MuJoCo's inverse dynamics, their motion is its own."""
+"""Random models of MuJoCo's, imported: their torques are those of its inverse dynamics, their motion is its own."""
 
 from __future__ import annotations
 
@@ -44,7 +44,9 @@ def test_drives_hold_what_mujocos_inverse_dynamics_says(seed):
         joint, (coordinate, law) = drive.keys["joint"], list(drive.keys.items())[1]
         drives.append(drive._replace(keys={"joint": joint, coordinate: f"{law} + {accelerations[joint]!r}*t**2/2"}))
     assert len(drives) == model.nv and not machine.left_out
-    study = solve(load("tree.yaml", spec_text(machine._replace(drives=tuple(drives)), "tree.yaml")), Options(wanted=REPORTS))
+    study = solve(
+        load("tree.yaml", spec_text(machine._replace(drives=tuple(drives)), "tree.yaml")), Options(wanted=REPORTS)
+    )
     data.qpos[:], data.qvel[:], data.qacc[:] = q, v, a
     mujoco.mj_inverse(model, data)
     found = [study.results.joints[model.joint(k).name]["drive"][0] for k in range(model.njnt)]

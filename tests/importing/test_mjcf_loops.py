@@ -22,6 +22,10 @@ from tests.shared.scenes import near
 mujoco = pytest.importorskip("mujoco", reason="needs the package mujoco: pip install -e '.[test]'")
 pytestmark = pytest.mark.heavy
 RATES = {"angle": "rate", "travel": "speed"}
+POLE = (
+    '<body name="pole" pos="0.5 2 1"><joint name="pole"/><geom size="0.1" pos="0 0 0.3"/>'
+    '<site name="end" pos="0.4 0 0"/></body>'
+)
 DENSE = 'jacobian="dense"'
 
 
@@ -40,7 +44,7 @@ def closed(rng: np.random.Generator, names: list[str]) -> str:
 def test_loops_close_and_are_driven_as_mujocos_own_rows_and_torques_say(seed):
     rng = np.random.default_rng(200 + seed)
     tree = random_tree(rng, 7, ("hinge", "slide"), loads=True)
-    tree.text += '<body name="pole" pos="0.5 2 1"><joint name="pole"/><geom size="0.1" pos="0 0 0.3"/><site name="end" pos="0.4 0 0"/></body>'
+    tree.text += POLE
     names = [name for name, _ in tree.joints]
     xml = tree.model(DENSE, closed(rng, names))
     model = mujoco.MjModel.from_xml_string(xml)
@@ -48,10 +52,14 @@ def test_loops_close_and_are_driven_as_mujocos_own_rows_and_torques_say(seed):
     machine = described(xml)
     motions = {one.name: f"({one.name} + {rng.normal()!r}*t + {rng.normal()!r}*t**2)" for one in machine.parameters}
     drives = [
-        drive._replace(keys={key: law if key == "joint" else with_motions(law, motions) for key, law in drive.keys.items()})
+        drive._replace(
+            keys={key: law if key == "joint" else with_motions(law, motions) for key, law in drive.keys.items()}
+        )
         for drive in machine.drives
     ]
-    moved = {parameter.name: f"{rng.normal() * 0.02 + _start(model, parameter.name)!r}" for parameter in machine.parameters}
+    moved = {
+        parameter.name: f"{rng.normal() * 0.02 + _start(model, parameter.name)!r}" for parameter in machine.parameters
+    }
     spec = load("loops.yaml", spec_text(machine._replace(drives=tuple(drives)), "loops.yaml"), overrides=moved)
     results = solve(spec, Options(wanted=frozenset({"motion", "joints"}))).results
     for number in range(model.njnt):
@@ -63,7 +71,9 @@ def test_loops_close_and_are_driven_as_mujocos_own_rows_and_torques_say(seed):
     acceleration = np.array(data.qacc)
     mujoco.mj_forward(model, data)
     J, gaps = np.array(data.efc_J).reshape(-1, model.nv)[: data.ne], np.array(data.efc_pos)[: data.ne]
-    closing = np.array([model.eq_type[number] != mujoco.mjtEq.mjEQ_JOINT for number in np.array(data.efc_id)[: data.ne]])
+    closing = np.array(
+        [model.eq_type[number] != mujoco.mjtEq.mjEQ_JOINT for number in np.array(data.efc_id)[: data.ne]]
+    )
     # couplings are drives, which have efforts of their own
     near(gaps, np.zeros(len(gaps)), 1.0, 1e-9)
     near(J @ data.qvel, np.zeros(len(gaps)), 1.0, 1e-8)

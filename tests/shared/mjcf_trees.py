@@ -55,7 +55,9 @@ def random_tree(rng: np.random.Generator, count: int, kinds: tuple[str, ...], lo
     return tree
 
 
-def _body(rng: np.random.Generator, tree: RandomTree, body: int, inner: str, kinds: tuple[str, ...], loads: bool) -> str:
+def _body(
+    rng: np.random.Generator, tree: RandomTree, body: int, inner: str, kinds: tuple[str, ...], loads: bool
+) -> str:
     names = "".join(_joint(rng, tree, body, number, kinds, loads) for number in range(_how_many(rng, kinds)))
     hidden = rng.random() < 0.2  # its mass is that of a body fixed to it
     gravcomp = f'gravcomp="{words(rng.uniform(0, 1))}"' if loads and rng.random() < 0.3 else ""

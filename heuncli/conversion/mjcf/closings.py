@@ -40,7 +40,7 @@ class Coupling(NamedTuple):
 
 
 class Closings(NamedTuple):
-    """What closes loops. carried: the equalities that the spec holds, by their numbers; left_out: why others are not."""
+    """What closes loops. carried: numbers of the equalities that the spec holds; left_out: why others are not."""
 
     joints: tuple[DescribedEntry, ...]
     couplings: tuple[Coupling, ...]
@@ -51,7 +51,7 @@ class Closings(NamedTuple):
 
 
 class End(NamedTuple):
-    """An end of an equality: the body of MuJoCo, the place and the attitude at the zero, in the axes of the body of the spec."""
+    """An end of an equality: the body of MuJoCo; place [m] and attitude at the zero, in the body of the spec."""
 
     body: int
     place: Vec
@@ -95,7 +95,9 @@ class Closer:
         sets = frozenset(self.carried), frozenset(self.rods)
         return Closings(joints, couplings, *sets, tuple(self.left_out), tuple(self.told))
 
-    def leave(self, number: int, why: str, hint: str = "what it holds is free in the spec: add what holds it there") -> None:
+    def leave(
+        self, number: int, why: str, hint: str = "what it holds is free in the spec: add what holds it there"
+    ) -> None:
         """Tell that an equality is left out."""
         self.left_out.append(left_out(self.c, "equality", number, why, hint))
 
@@ -206,6 +208,6 @@ def moved(polynomial: tuple[float, ...], argument: str) -> str:
 def _terms(polynomial: tuple[float, ...], argument: str) -> Iterator[str]:
     for power, factor in enumerate(polynomial):
         if factor:
-            yield pointed(factor) if power == 0 else f"{pointed(factor)}*{argument}" + (f"**{power}" if power > 1 else "")
-
-
+            yield (
+                pointed(factor) if power == 0 else f"{pointed(factor)}*{argument}" + (f"**{power}" if power > 1 else "")
+            )

@@ -110,7 +110,10 @@ def _problem(text: str, file: str) -> Problem:
     location = SourceLocation(file, int(found[1]), 1) if found and int(found[1]) > 0 else None
     where = "" if location else f"{file}: "
     return Problem(
-        "import-mjcf", f"{where}MuJoCo does not compile it: {said}", location, hint="it says so of the file by itself, too"
+        "import-mjcf",
+        f"{where}MuJoCo does not compile it: {said}",
+        location,
+        hint="it says so of the file by itself, too",
     )
 
 

@@ -23,7 +23,7 @@ NOWHERE: Vec = (0.0, 0.0, 0.0)
 
 
 class Frames(NamedTuple):
-    """Of each of MuJoCo's bodies: the body that it is part of (0: the ground), its attitude, its origin's place there."""
+    """Of each of MuJoCo's bodies: the body that it is part of (0: the ground), its attitude, its origin there."""
 
     owners: tuple[int, ...]
     attitudes: tuple[Matrix, ...]
@@ -108,4 +108,3 @@ def _own(model: Any, frames: Frames, body: int) -> MassProperties:
     center = frames.place(body, model.body_ipos[body])
     principal: Matrix = ((A1, 0.0, 0.0), (0.0, A2, 0.0), (0.0, 0.0, A3))
     return MassProperties(float(model.body_mass[body]), center, turned_tensor(R, principal))
-

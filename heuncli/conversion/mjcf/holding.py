@@ -26,9 +26,9 @@ OPEN = (0.1, 1e-3, 1e-6)
 
 def held(c: Compiled, tree: Tree, closings: Closings, q: Any) -> tuple[int, ...]:
     """The numbers of the joints that are held, in MuJoCo's order."""
-    steps = [step for step in tree.steps if step.kind in COORDINATE and step.joint is not None]
     slaves = {coupling.slave for coupling in closings.couplings}
-    joints = [step.joint for step in steps if step.joint not in slaves]
+    movable = [joint for joint, step in tree.of_joint.items() if step.kind in COORDINATE]
+    joints = [joint for joint in movable if joint not in slaves]
     if not closings.carried:
         return tuple(joints)
     leaders = {coupling.master for coupling in closings.couplings}

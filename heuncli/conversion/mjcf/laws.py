@@ -1,7 +1,8 @@
-"""What moves the joints: drives at a parameter each, couplings as drives by the parameter of the joint that they follow.
+"""What moves the joints: drives at a parameter each, couplings as drives by the parameter of the joint that leads.
 
-A coordinate of MuJoCo's is not 0 where the machine is drawn if its joint has a `ref`; that of a spec is. Parameters have
-MuJoCo's values, and the laws of the drives take the difference off: angle = elbow - ref. A keyframe's rate goes in, too.
+A coordinate of MuJoCo's is not 0 where the machine is drawn if its joint has a `ref`; that of a spec is. Parameters
+have MuJoCo's values, and the laws of the drives take the difference off: angle = elbow - ref. A keyframe's rate goes
+in, too.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ HELD_HINT = "drives hold what moves by itself; of this coupling neither joint do
 
 
 class Laws(NamedTuple):
-    """What moves the joints. initial: start values of free joints by name; driven: the numbers of those with a drive."""
+    """What moves the joints. initial: start values of free joints by name; driven: numbers of those with a drive."""
 
     parameters: tuple[DescribedParameter, ...]
     drives: tuple[DescribedEntry, ...]
@@ -68,7 +69,9 @@ class _Making:
         if self.asked.free:
             message = f"joint {step.name} follows another, which free joints do not"
             place = c.location("equality", coupling.equality)
-            raise SpecError(Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio"))
+            raise SpecError(
+                Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
+            )
         argument = self.argument(coupling)
         if argument is None:
             why = f"{step.name} follows a joint that nothing holds"
@@ -76,7 +79,11 @@ class _Making:
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
         self.laws[coupling.slave] = _less(law, -zero(c, coupling.slave))
-        leads = "" if coupling.master is None else f"; of a motion its law is {self.steps[coupling.master].name}'s, by this rule"
+        leads = (
+            ""
+            if coupling.master is None
+            else f"; of a motion its law is {self.steps[coupling.master].name}'s, by this rule"
+        )
         self.drive(coupling.slave, law, f"{c.told('equality', coupling.equality)}{leads}")
 
     def drive(self, joint: int, law: str, remark: str = "") -> None:
@@ -84,10 +91,12 @@ class _Making:
         self.driven.add(joint)
         motors = ", ".join(_motors(self.c, joint))
         remark = "; ".join(filter(None, (remark, motors)))
-        self.drives.append(DescribedEntry(f"hold_{step.name}", {"joint": step.name, COORDINATE[step.kind]: law}, remark))
+        self.drives.append(
+            DescribedEntry(f"hold_{step.name}", {"joint": step.name, COORDINATE[step.kind]: law}, remark)
+        )
 
     def argument(self, coupling: Coupling) -> str | None:
-        """What a coupling is a polynomial of: its leader's way from the zero; empty: of nothing; None: none tells it."""
+        """What a coupling is a polynomial of, its leader's way from the zero; empty: of nothing; None: unknown."""
         if coupling.master is None:
             return ""
         law = self.laws.get(coupling.master)

@@ -1,10 +1,10 @@
 """Springs, dampers and the like of MuJoCo's that a spec has, too; its stops.
 
-    hinge      -k (q - springref) - d q'    a turn_spring, a damper
-    slide      the same along its axis      a torque (thrust) by its travel, a damper
-    ball       -d sigma, relative           a damper
-    tendon     straight, k (length - lengthspring), d of its rate: a spring
-    gravcomp   -gravcomp m g at the centre of mass: a force
+hinge      -k (q - springref) - d q'    a turn_spring, a damper
+slide      the same along its axis      a torque (thrust) by its travel, a damper
+ball       -d sigma, relative           a damper
+tendon     straight, k (length - lengthspring), d of its rate: a spring
+gravcomp   -gravcomp m g at the centre of mass: a force
 """
 
 from __future__ import annotations
@@ -78,7 +78,9 @@ def tendon_springs(c: Compiled, closer: Closer, name: Name) -> Iterator[Describe
         yield DescribedEntry(wanted, keys, c.told("tendon", tendon))
 
 
-def weightless(c: Compiled, frames: Frames, tree: Tree, points: Points, gravity: Any, name: Name) -> Iterator[DescribedEntry]:
+def weightless(
+    c: Compiled, frames: Frames, tree: Tree, points: Points, gravity: Any, name: Name
+) -> Iterator[DescribedEntry]:
     """What carries the weight of bodies that MuJoCo takes it from."""
     for body in range(1, int(c.model.nbody)):
         share, mass = float(c.model.body_gravcomp[body]), float(c.model.body_mass[body])
@@ -100,6 +102,4 @@ def stops(c: Compiled, tree: Tree, driven: frozenset[int], name: Name) -> Iterat
             continue
         if step.kind in COORDINATE:
             low, high = (float(limit) - zero(c, step.joint) for limit in c.model.jnt_range[step.joint])
-            yield DescribedEntry(
-                name(f"limits_{step.name}"), {"joint": step.name, COORDINATE[step.kind]: (low, high)}
-            )
+            yield DescribedEntry(name(f"limits_{step.name}"), {"joint": step.name, COORDINATE[step.kind]: (low, high)})

@@ -8,7 +8,6 @@ count. Impure: reads files.
 
 from __future__ import annotations
 
-import os
 import stat
 from collections.abc import Iterator
 from pathlib import Path
@@ -33,14 +32,14 @@ MANY = "MuJoCo makes them all before anything is said of them"
 
 
 class NamedFiles(NamedTuple):
-    """folder: from which names of files are looked up; included: texts of models by the names that they are given."""
+    """folder: where names of files are looked up; included: texts of models by their names."""
 
     folder: str
     included: dict[str, bytes]
 
 
 def named_files(root: XmlElement, file: str) -> NamedFiles:
-    """The files that a model names. Raises SpecError: no regular file, too large, no XML, a count beyond all measure."""
+    """The files that a model names. Raises SpecError: no regular file, too large, no XML, a count too large."""
     folder = Path() if file == STANDARD_INPUT else Path(file).parent
     included: dict[str, bytes] = {}
     waiting = [(root, file, folder)]
@@ -109,7 +108,7 @@ def _require_countable(element: XmlElement, makes: int, file: str) -> None:
 
 def _require_readable(path: Path, element: XmlElement, file: str) -> None:
     try:
-        found = os.stat(path)
+        found = path.stat()
     except (OSError, ValueError):
         return
     name = shown(element.attributes["file"])

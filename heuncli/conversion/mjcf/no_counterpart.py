@@ -25,7 +25,7 @@ MOST_GROUPS = 3000  # of geoms that are looked at in pairs
 
 
 class Row(NamedTuple):
-    """One thing without counterpart. kind: of the parts that have it; has: their numbers; hint: what a spec has for it."""
+    """One thing without counterpart. kind: of the parts that have it; has: their numbers; hint: what there is."""
 
     kind: str
     has: Callable[[Compiled], Iterable[int]]
@@ -178,12 +178,13 @@ def _excluded(c: Compiled, weld: Any, bodies: Any) -> Any:
 ROWS = (
     Row(
         "joint", lambda c: _joints_of_dofs(c, c.model.dof_armature),
-        "the inertia of a motor (armature) is not in a spec; a motion that is not uniform needs more than its drive tells",
-        "at rest it adds nothing; else add armature * acceleration to the drive's torque",
+        "the inertia of a motor (armature) is left out: at rest it adds nothing",
+        "a motion takes armature * acceleration more than its drive tells",
     ),
     Row(
         "joint", lambda c: [] if c.switched_off("FRICTIONLOSS") else _joints_of_dofs(c, c.model.dof_frictionloss),
-        "dry friction (frictionloss) is left out", "a force of type friction has it, with the speed at which it is full",
+        "dry friction (frictionloss) is left out",
+        "a force of type friction has it, with the speed at which it is full",
     ),
     Row(
         "joint", lambda c: _where(c, c.model.jnt_stiffness, _of_type(c, "mjJNT_BALL", "mjJNT_FREE")),

@@ -1,10 +1,10 @@
 """Where all bodies stand and how they move at given coordinates of MuJoCo's: at its zero, or in a keyframe.
 
-    S_B   attitude of a body against that at the zero: R_WB at the coordinates, times R_WB^T at the zero
-    S_C = S_P Rot(a, q - q0)         a hinge, a along the world's axes at the zero
-    S_C = S_P R_C0 R(q) R_C0^T       a ball, whose coordinates are a quaternion in the axes of the body
-    S_C = R(q) R_C0^T                a free body
-    sigma_C = sigma_P + S_C a q'     and so with the axes of a ball; of a free body in its own axes
+S_B   attitude of a body against that at the zero: R_WB at the coordinates, times R_WB^T at the zero
+S_C = S_P Rot(a, q - q0)         a hinge, a along the world's axes at the zero
+S_C = S_P R_C0 R(q) R_C0^T       a ball, whose coordinates are a quaternion in the axes of the body
+S_C = R(q) R_C0^T                a free body
+sigma_C = sigma_P + S_C a q'     and so with the axes of a ball; of a free body in its own axes
 """
 
 from __future__ import annotations
@@ -65,7 +65,9 @@ def _next(c: Compiled, frames: Frames, step: Step, before: Pose, q: Any, qd: Any
         moved = float(q[at]) - float(model.qpos0[at])
         if step.kind == FREE:
             S = np.array(rotation(q[at + 3 : at + 7])) @ R_C0.T
-            return Pose(S, np.array(q[at : at + 3]), S @ R_C0 @ qd[rate_at + 3 : rate_at + 6], qd[rate_at : rate_at + 3])
+            return Pose(
+                S, np.array(q[at : at + 3]), S @ R_C0 @ qd[rate_at + 3 : rate_at + 6], qd[rate_at : rate_at + 3]
+            )
         if step.kind == "ball":
             S = before.S @ R_C0 @ np.array(rotation(q[at : at + 4])) @ R_C0.T
             sigma = before.sigma + S @ R_C0 @ qd[rate_at : rate_at + 3]

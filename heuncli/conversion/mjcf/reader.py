@@ -25,15 +25,23 @@ from heuncli.conversion.names import Namer, called
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.nearest import did_you_mean
-from heuncli.spec.models import ZERO, Matrix, Vec
+from heuncli.spec.models import ZERO, Matrix
 
 NOTHING: Matrix = (ZERO, ZERO, ZERO)
+READ = (  # the arrays whose numbers come into a spec
+    "body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos", "body_iquat", "body_gravcomp", "jnt_pos",
+    "jnt_axis", "jnt_range", "jnt_stiffness", "dof_damping", "qpos0", "qpos_spring", "site_pos", "site_quat", "eq_data",
+    "tendon_length0", "tendon_lengthspring", "tendon_stiffness", "tendon_damping", "key_qpos", "key_qvel",
+)  # fmt: skip
 
 
 def described(content: bytes, file: str, root: XmlElement, asked: ImportAsked, sha256: str) -> DescribedMachine:
     """The machine that a model of MuJoCo's describes. Raises SpecError."""
     c = compiled(content, file, named_files(root, file))
     _require_finite(c)
+    if not any(frames_of(c.model).owners):
+        message = "nothing moves in it: no body has a joint"
+        raise SpecError(Problem("import-mass", message, SourceLocation(file, 1, 1), "is it the right file?"))
     return _Said(c, asked).machine(sha256)
 
 
@@ -57,6 +65,7 @@ class _Said:
         self.names.given |= {drive.name for drive in self.laws.drives}
 
     def machine(self, sha256: str) -> DescribedMachine:
+        """The machine."""
         c, model = self.c, self.c.model
         gravity = ZERO if c.switched_off("GRAVITY") else vec(model.opt.gravity)
         forces = (
@@ -130,7 +139,9 @@ class _Said:
             if name in self.tree.carriers:
                 carried = mass_properties(self.c.model, self.frames, self.tree.carriers[name])
                 its = self.tree.names[self.tree.carriers[name]]
-                remark = f"between the joints of {its}: no body of the file; its mass, {CARRIER:g} of that, adds nothing"
+                remark = (
+                    f"between the joints of {its}: no body of the file; its mass, {CARRIER:g} of that, adds nothing"
+                )
                 yield DescribedBody(
                     name, CARRIER * carried.mass, ZERO, NOTHING, self.points.of(name), (), start.keys, remark
                 )
@@ -171,7 +182,9 @@ def _start_values(c: Compiled, keyframe: str | None) -> tuple[Any, Any]:
     if keyframe in names or keyframe in numbers:
         number = names.index(keyframe) if keyframe in names else int(keyframe)
         return np.array(model.key_qpos[number]), np.array(model.key_qvel[number])
-    hint = did_you_mean(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave --keyframe out"
+    hint = (
+        did_you_mean(keyframe, [name for name in names if name], "keyframes") if any(names) else "leave --keyframe out"
+    )
     message = f"no keyframe is called {keyframe!r}; there are {len(names)}"
     raise SpecError(Problem("import-keyframe", message, SourceLocation(c.file, 1, 1), hint))
 
@@ -179,9 +192,7 @@ def _start_values(c: Compiled, keyframe: str | None) -> tuple[Any, Any]:
 def _require_finite(c: Compiled) -> None:
     """Raise SpecError where a number that is read is none: MuJoCo lets nan pass, with a warning."""
     model = c.model
-    names = ("body_pos", "body_quat", "body_mass", "body_inertia", "body_ipos", "body_iquat", "jnt_pos", "jnt_axis")
-    names += ("jnt_stiffness", "dof_damping", "qpos0", "qpos_spring", "site_pos", "eq_data", "tendon_length0")
-    wrong = [name for name in names if not np.isfinite(np.asarray(getattr(model, name))).all()]
+    wrong = [name for name in READ if not np.isfinite(np.asarray(getattr(model, name))).all()]
     if not np.isfinite(np.asarray(model.opt.gravity)).all():
         wrong.append("gravity")
     if wrong:

@@ -26,8 +26,8 @@ RATE = {"pin": "rate", "slide": "speed"}
 class Step(NamedTuple):
     """One joint of the tree, from one body of the spec to the next.
 
-    joint: its number in MuJoCo, None of a weld; kind: its type in a spec, or FREE; body: the body of MuJoCo in whose axes
-    its place and its axis are given.
+    joint: its number in MuJoCo, None of a weld; kind: its type in a spec, or FREE; body: the body of MuJoCo in whose
+    axes its place and its axis are given.
     """
 
     joint: int | None
@@ -39,7 +39,7 @@ class Step(NamedTuple):
 
 
 class Tree(NamedTuple):
-    """names: of the bodies of MuJoCo that are bodies of the spec (0: the ground); wanted: what they are called there."""
+    """names: of those bodies of MuJoCo that are bodies of the spec (0: the ground); wanted: what MuJoCo calls them."""
 
     names: dict[int, str]
     wanted: dict[int, str]
@@ -84,7 +84,9 @@ def _joints(c: Compiled, body: int) -> list[tuple[int, str]]:
     """The joints of a body and their kinds, the one nearest to its parent first."""
     kinds = {int(getattr(c.mujoco.mjtJoint, word)): kind for word, kind in KINDS.items()}
     first = int(c.model.body_jntadr[body])
-    return [(k, kinds.get(int(c.model.jnt_type[k]), FREE)) for k in range(first, first + int(c.model.body_jntnum[body]))]
+    return [
+        (k, kinds.get(int(c.model.jnt_type[k]), FREE)) for k in range(first, first + int(c.model.body_jntnum[body]))
+    ]
 
 
 def _joint_name(c: Compiled, body: str, joint: int, its: list[tuple[int, str]]) -> str:
