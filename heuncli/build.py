@@ -80,6 +80,7 @@ class BuildKernel(build_ext):
     """build_ext with the kernel's modules, headers and flags, and the meaning of HEUN_KERNEL."""
 
     sanitized = False
+    given_up = False  # a module could not be compiled: all of them, or none
 
     def initialize_options(self) -> None:
         add_kernel(self.distribution)
@@ -143,14 +144,16 @@ class BuildKernel(build_ext):
         return not compiled.exists() or compiled.stat().st_mtime_ns < last
 
     def build_extension(self, ext: Extension) -> None:
+        if self.given_up:  # the others would not be used
+            return
         self.force = self.is_older_than_headers(ext)
         try:
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
             if not ext.optional:
                 raise
-            self.forget(ext)
-            print(f"heun: {ext.name} is not compiled, its plain file will run instead: {reason}", file=sys.stderr)
+            self.given_up = True
+            print(f"heun: {ext.name} is not compiled, the kernel's plain files will run: {reason}", file=sys.stderr)
 
     def is_compiled(self) -> bool:
         """Whether the build tree holds every module of the kernel in compiled form."""

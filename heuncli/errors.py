@@ -12,7 +12,7 @@ LONGEST = 5000  # characters of a message that are told: an expression of the lo
 
 
 class SourceLocation(NamedTuple):
-    """Where in a file: 1-based line and column, and the dotted path of the value."""
+    """Where in a file: 1-based line and column, and the dotted path of the value; line 0 of what is no file."""
 
     file: str
     line: int
@@ -20,7 +20,7 @@ class SourceLocation(NamedTuple):
     path: str = ""
 
     def __str__(self) -> str:
-        return f"{shown(self.file)}:{self.line}:{self.column}"
+        return f"{shown(self.file)}:{self.line}:{self.column}" if self.line else shown(self.file)
 
 
 class Problem(NamedTuple):
@@ -70,6 +70,12 @@ class HeunError(Exception):
     def tell(self, *problems: Problem) -> None:
         """Tell these problems instead."""
         self.args, self.problems = ("\n".join(map(str, problems)),), problems
+
+
+class UsageError(HeunError):
+    """What is asked for is not there: by a word of the command line, or by an argument in Python."""
+
+    exit_code = 2
 
 
 class SpecError(HeunError):

@@ -147,6 +147,11 @@ class Results:
     work: Work = field(default_factory=Work)
     warnings: tuple[str, ...] = ()
 
+    @property
+    def horizon(self) -> float | None:
+        """The first instant [s] from which on nothing is claimed; None where there is none."""
+        return self.accuracy.get("horizon")
+
 
 class Place(NamedTuple):
     """A place in a run of cuts: distance s [m], side of what acts there, and which of the asked cuts it is, if any."""

@@ -140,10 +140,10 @@ def _axes(results: Results, keys: Sequence[str], row: Quantity | None, dimension
 
 def _is_run(results: Results, keys: Sequence[str]) -> bool:
     """Whether the keys lead into a run of cuts, of the whole motion or of one blow."""
-    return "s" in _section(results, keys)
+    return "s" in section_of(results, keys)
 
 
-def _section(results: Results, keys: Sequence[str]) -> Block:
+def section_of(results: Results, keys: Sequence[str]) -> Block:
     """The section into which the keys lead, of the whole motion or of one blow; empty where they lead into none."""
     sections = results.sections
     if keys[0] == BLOWS:
@@ -167,7 +167,7 @@ def _at_a_cut(
         word = left.pop(k if len(rest) == len(axes) else 0)
     if word is None or not names_a_cut(word):
         return values, axes, rest
-    section = _section(results, keys)
+    section = section_of(results, keys)
     try:
         row = row_at(word, section["s"], section.get("side") or [None] * len(section["s"]), np.moveaxis(values, k, -1))
     except Finding as finding:

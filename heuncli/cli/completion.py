@@ -70,12 +70,25 @@ def only(data: dict[str, Any], incomplete: str) -> Iterator[str]:
     yield from (given + word for word in (*REPORTS, SHARES, *entries))
 
 
+def bodies(data: dict[str, Any], incomplete: str) -> Iterator[str]:
+    """The bodies."""
+    from heuncli.spec.names import mapping
+
+    yield from mapping(data.get("bodies"))
+
+
 def measures(data: dict[str, Any], incomplete: str) -> Iterator[str]:
     """How a number is taken over the run, and the paths of numbers."""
     how, space, _ = incomplete.rpartition(" ")
     if not space:
         yield from HOWS
     yield from (how + space + path for path in paths(data))
+
+
+def collectives(data: dict[str, Any], incomplete: str) -> Iterator[str]:
+    """Paths of numbers, behind those that are given."""
+    given = incomplete[: incomplete.rfind(",") + 1]
+    yield from (given + path for path in paths(data))
 
 
 def paths(data: dict[str, Any]) -> Iterator[str]:
@@ -132,5 +145,5 @@ def _files(ctx: typer.Context, incomplete: str) -> list[str]:
 
 BY_WORD: dict[str, Callable[[typer.Context, str], list[str]]] = {
     "spec": _files, "set": _of_spec(sets), "case": _of_spec(cases), "only": _of_spec(only),
-    "measure": _of_spec(measures),
+    "measure": _of_spec(measures), "collective": _of_spec(collectives), "body": _of_spec(bodies),
 }  # fmt: skip

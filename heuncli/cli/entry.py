@@ -16,6 +16,7 @@ from heuncli.cli.files import ReaderGone
 from heuncli.cli.output import emit, say
 from heuncli.cli.registry import Asked
 from heuncli.errors import HeunError, LimitError, Problem
+from heuncli.errors import UsageError as UsageError  # for the commands: what they raise beside what is here
 from heuncli.foreign_text import shown
 from heuncli.spec.reading import forget
 from heuncli.version import VERSION
@@ -31,12 +32,6 @@ class Bug(HeunError):
     """What heun does not know how to name: its own mistake."""
 
     exit_code = BUG
-
-
-class UsageError(HeunError):
-    """The command line asks for what there is not."""
-
-    exit_code = 2
 
 
 def enter(argv: Sequence[str]) -> int:

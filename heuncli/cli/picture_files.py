@@ -1,25 +1,18 @@
-"""Pictures as files: by the end of a name as SVG, which needs nothing, or as PNG or PDF by matplotlib."""
+"""Where a command's picture goes: judged before any work."""
 
 from __future__ import annotations
-
-from pathlib import Path
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.files import STDOUT
 from heuncli.cli.guard import same_file
 from heuncli.cli.target import require_room
-from heuncli.drawing.picture import Picture, svg
+from heuncli.drawing.as_file import form_of
 from heuncli.errors import Problem
-
-PICTURES = {".svg": "svg", ".png": "png", ".pdf": "pdf"}
 
 
 def picture_form(name: str, option: str) -> str:
     """The form of a picture by the end of its name, before any work. Raises UsageError, SpecError, OutputError."""
-    form = PICTURES.get(Path(name).suffix.lower())
-    if form is None:
-        hint = f"known endings: {', '.join(PICTURES)}"
-        raise UsageError(Problem("bad-option", f"{option} {name}: no picture is known by that ending", hint=hint))
+    form = form_of(name, option)
     require_room(name, option)
     if form != "svg":
         from heuncli.drawing.matplotlib_file import require_plot
@@ -38,12 +31,3 @@ def saved_beside(name: str | None, output: str | None) -> str | None:
             Problem("bad-option", f"--save {name}: that is where the table goes", hint="name another file")
         )
     return form
-
-
-def as_file(picture: Picture, form: str) -> bytes:
-    """The picture in a form."""
-    if form == "svg":
-        return svg(picture).encode()
-    from heuncli.drawing.matplotlib_file import rendered
-
-    return rendered(picture, form)

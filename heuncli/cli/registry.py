@@ -73,6 +73,7 @@ COMMANDS = (
     Command("plot", page="pictures"),
     Command("show", page="pictures"),
     Command("report", folder="reporting", page="pictures"),
+    Command("export", folder="exporting", page="exporting"),
     Command("check", page="pipelines"),
     Command("diff", page="pipelines"),
     Command("import", folder="importing", page="importing"),

@@ -66,7 +66,7 @@ def _ended(of: Reported) -> Iterator[Sentence]:
         status = run.results.status
         if status.get("code", "completed") != "completed":
             yield Sentence(f"{case}the run {status['code']}: {status.get('message', '')}", "bad")
-        if (horizon := run.results.accuracy.get("horizon")) is not None:
+        if (horizon := run.results.horizon) is not None:
             text = f"{case}from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 there"
             yield Sentence(f"{text}. All extremes are those before.", "unsure")
         if not run.searched:
@@ -141,7 +141,7 @@ def _largest(of: Reported) -> Iterator[Sentence]:
 def _struck(of: Reported) -> Iterator[Sentence]:
     """The blows before the horizon, and their largest impulse."""
     for run in of.runs:
-        horizon = run.results.accuracy.get("horizon")
+        horizon = run.results.horizon
         blows = [blow for blow in run.results.impulses if horizon is None or float(blow["time"]) < horizon]
         if not blows:
             continue

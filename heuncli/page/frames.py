@@ -46,7 +46,7 @@ def frames_of(study: Study, peaks: Array, most: int = MOST) -> PageFrames:
     results = study.results
     if study.of_one_instant:
         return PageFrames(results.time, ())
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     asked = results.time if horizon is None else results.time[results.time < horizon]
     if len(asked) < 2:
         of_horizon = ("Nothing is claimed of this motion beyond its start.",) if len(results.time) > len(asked) else ()

@@ -44,7 +44,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     peaks = peak_times(study, labels, certain)
     frames = frames_of(study, peaks.times, most)
     results = results_at(study, frames.times)
-    horizon = own.accuracy.get("horizon")
+    horizon = own.horizon
     return {
         "title": shown(own.title),
         "about": [[label, shown(text)] for label, text in (*heading(own)[1:], ("spec", _digest(own))) if text],

@@ -254,7 +254,7 @@ class WholeBar:
 
         searched = ColumnSearch(no_columns, (), errors, np.zeros(len(errors), dtype=bool), along)
         sampled = StudyColumns(self.study, searched, SECTIONS, self.setup)
-        times, horizon = self.study.search_times, self.study.results.accuracy.get("horizon")
+        times, horizon = self.study.search_times, self.study.results.horizon
         times = times if horizon is None else times[times < horizon]
         found = sampled.placed(extremes.search(sampled.columns, times, sampled.groups, errors=errors))
         rows = zip(found.low, found.low_at, found.high, found.high_at, found.places, strict=True)

@@ -57,14 +57,14 @@ class NumberCourse(NamedTuple):
 
 def is_claimed(study: Study) -> bool:
     """Whether anything is claimed of a run at any of its instants: whether its horizon is behind the first."""
-    horizon = study.results.accuracy.get("horizon")
+    horizon = study.results.horizon
     return study.of_one_instant or horizon is None or bool(study.results.time[0] < horizon)
 
 
 def require_claimed(study: Study) -> None:
     """Raise NotDrawable for a run whose instants are all beyond its horizon."""
     if not is_claimed(study):
-        horizon, first = study.results.accuracy["horizon"], study.results.time[0]
+        horizon, first = study.results.horizon, study.results.time[0]
         message = f"from t = {horizon:.6g} s on nothing is claimed, and the first instant is t = {first:.6g} s"
         raise NotDrawable(message, "earlier instants, or a smaller --tolerance")
 
@@ -86,7 +86,7 @@ def instants(study: Study, most: int = MOST) -> Array:
         looked_at = looked_at[distinct(np.concatenate([some, jumps, jumps + 1]))]
     even = np.linspace(times[0], times[-1], ENOUGH)
     found = distinct(np.concatenate([times, looked_at, even]))
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     return np.asarray(found if horizon is None else found[found < horizon])
 
 

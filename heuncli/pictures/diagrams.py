@@ -94,7 +94,7 @@ def _words(source: Pictured, at: Sequence[float] | None) -> Iterator[str]:
     study = source.study
     results = study.results
     told = [source.name or str(results.spec.get("path", ""))]
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     if study.of_one_instant:
         told.append("at one instant")
     else:

@@ -52,7 +52,7 @@ def marks_of(sources: Sequence[Pictured], courses: Sequence[NumberCourse]) -> tu
 
 def _claimed_to(results: Results) -> float:
     """The horizon of a run, or without end."""
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     return np.inf if horizon is None else float(horizon)
 
 

@@ -202,7 +202,7 @@ def _blanks(sources: Sequence[Pictured], drawn: Sequence[PanelCourse], x: Scalin
         yield Blank(x.low, x.high, ALL_OPEN)
         return
     claimed = max(
-        float(results.time[-1]) if (horizon := results.accuracy.get("horizon")) is None else horizon
+        float(results.time[-1]) if (horizon := results.horizon) is None else horizon
         for results in (source.study.results for source in sources)
     )
     if across.over is None and any(claimed < source.study.results.time[-1] for source in sources):
@@ -268,7 +268,7 @@ def figures(value: float, error: float, size: float) -> str:
 def _words(source: Pictured) -> Iterator[str]:
     """Of which run it is, and how well that is known."""
     results = source.study.results
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     parts = [source.name or str(results.spec.get("path", "")), f"method {results.model.get('method', 'none')}"]
     motion = results.accuracy.get("estimate", {}).get("motion")
     if motion:

@@ -110,7 +110,7 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
         errors["sections", "Pa"] = stress * error
         errors["sections", "1"] = scales.get(("sections", "1"), 0.0) / load * error
         lost["Pa"] = stress * lost["N"]
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     if horizon is not None and results.time[0] >= horizon:
         errors = dict.fromkeys(errors, math.inf)
     return with_units(Certainty(errors, lost), labels.units)
@@ -196,7 +196,7 @@ def _relative(results: Results, kind: str) -> float:
     error = results.accuracy.get("estimate", Estimate()).get(kind)
     if not isinstance(error, float) or not math.isfinite(error):
         return tolerances.WRITTEN
-    if results.accuracy.get("horizon") is not None:
+    if results.horizon is not None:
         error = min(error, tolerances.CLAIMED)
     return max(error, tolerances.WRITTEN)
 

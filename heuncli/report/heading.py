@@ -39,7 +39,7 @@ def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
     ]
     if results.model.get("split"):
         lines.append(("split", f"{results.model['split']}; other splits do as well"))
-    if (horizon := results.accuracy.get("horizon")) is not None:
+    if (horizon := results.horizon) is not None:
         lines.append(
             ("horizon", f"from t = {horizon:.4g} s on nothing is claimed: the error may pass 1e-3 (? in tables)")
         )

@@ -90,7 +90,7 @@ def listing(blows: BlowReport, sizes: Array, shown: Indices, every: bool) -> Tex
         for own, (unit, size) in zip(sizes.T, told, strict=True)
     )
     clock = write_times(times.tolist(), float(np.ptp(blows.results.time)) or float(np.ptp(times)))
-    horizon = blows.results.accuracy.get("horizon")
+    horizon = blows.results.horizon
     rows = []
     listed = found if every else found[:MOST_LISTED]
     for i, block in enumerate(listed):
@@ -114,7 +114,7 @@ def tables_of(blows: BlowReport, number: int, every: bool = False) -> list[TextT
     view, labels = at_one_instant(blows.results, impulse), blows.labels
     called = f"IMPULSE at t = {float(impulse['time']):.6g} s ({', '.join(impulse['names'])})"
     lead = f"{called}  "
-    horizon = blows.results.accuracy.get("horizon")
+    horizon = blows.results.horizon
     certain = with_axis(blows.certain, view, blows.of, labels.units, UNIT)
     series = in_units(walk_impulse(impulse, labels), labels.units)
     by_cause = any(item.cause for item in series)

@@ -160,7 +160,7 @@ class Page(NamedTuple):
         shares: SharesAt | None = None,
     ) -> list[TextTable]:
         """The tables at the instants of `results`, which is the same run at any instants; searched: where it is one."""
-        horizon = self.results.accuracy.get("horizon")
+        horizon = self.results.horizon
         unknown = frozenset(results.accuracy.get("unknown", ()))
         certain = with_axis(self.certain._replace(beside=unknown), results, self.of, self.labels.units)
         tables: list[TextTable] = []
@@ -183,7 +183,7 @@ class Page(NamedTuple):
         """What each cause does at some instants."""
         from heuncli.report import cause_tables  # few runs ask for them
 
-        horizon = self.results.accuracy.get("horizon")
+        horizon = self.results.horizon
         shared, tables = self._shared(results), list[TextTable]()
         for block in self._blocks(results):
             tables += cause_tables.instants_table(block, shared, results.time, horizon, certain)
@@ -241,7 +241,7 @@ class Page(NamedTuple):
 
 def page_of(results: Results, labels: Labels, of: Magnitudes, *, details: bool = True) -> Page:
     """The page of a run, ending before its horizon; `of`: what its numbers are summed from."""
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     certain = certainty(results, labels, of)
     if horizon is None or results.time[-1] < horizon:
         return Page(results, labels, certain, of, details=details)

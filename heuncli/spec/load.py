@@ -16,7 +16,7 @@ from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
 from heuncli.spec.models import Curve, Spec
 from heuncli.spec.names import NAMED, Names, mapping
-from heuncli.spec.overrides import of_words, override, taken_in_si
+from heuncli.spec.overrides import Setting, of_words, override, taken_in_si
 from heuncli.spec.parameters import Parameters, evaluate_parameters
 from heuncli.spec.planar import in_the_plane
 from heuncli.spec.quantity import Scope, kind_of
@@ -35,30 +35,37 @@ if TYPE_CHECKING:
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
 
 
+Given = Mapping[str, str] | Sequence[Setting]
+
+
 def load(
     path: str | Path,
-    text: str | None = None,
-    overrides: Mapping[str, str] | None = None,
+    text: str | SourceFile | None = None,
+    overrides: Given | None = None,
     checking: bool = True,
     case: str | None = None,
 ) -> Spec:
-    """The scene in a file ("-" is standard input), or in a text that stands for it.
+    """The scene in a file ("-" is standard input), or in what stands for it: a text, or what was read already.
 
-    overrides are parameters or dotted keys with their new values, as text; case: a load case, whose values they go on
-    top of. Files of tables are looked for beside the spec, for standard input in the working directory. Without
-    `checking` expectations need not fit the instants asked for, which may have been overridden. Raises SpecError with
-    all problems, in the order of the lines.
+    overrides are parameters or dotted keys with their new values, as text or as they are; case: a load case, whose
+    values they go on top of. Files of tables are looked for beside the spec, for standard input in the working
+    directory. Without `checking` expectations need not fit the instants asked for, which may have been overridden.
+    Raises SpecError with all problems, in the order of the lines.
     """
     path = str(path)
     begin_file()
-    return Loading(path, read(path, text), overrides or {}, checking, case).spec()
+    return Loading(path, _source(path, text), overrides or {}, checking, case).spec()
+
+
+def _source(path: str, text: str | SourceFile | None) -> SourceFile:
+    return text if isinstance(text, SourceFile) else read(path, text)
 
 
 def load_with_cases(
     path: str,
-    overrides: Mapping[str, str] | None = None,
+    overrides: Given | None = None,
     checking: bool = True,
-    text: str | None = None,
+    text: str | SourceFile | None = None,
     files: NamedFiles | None = None,
 ) -> tuple[Spec, dict[str, Spec]]:
     """The scene, and each of its load cases by its name, of one reading of the file, or of a text that stands for it.
@@ -68,7 +75,7 @@ def load_with_cases(
     Raises SpecError with all problems of the scene, else with those of all cases, which are named in them.
     """
     begin_file()
-    source = read(path, text)
+    source = _source(path, text)
     spec = Loading(path, source, overrides or {}, checking, None, files).spec()
     cases: dict[str, Spec] = {}
     problems: list[Problem] = []
@@ -89,7 +96,7 @@ class Loading:
         self,
         path: str,
         source: SourceFile,
-        overrides: Mapping[str, str],
+        overrides: Given,
         checking: bool,
         case: str | None,
         files: NamedFiles | None = None,
@@ -106,7 +113,7 @@ class Loading:
                 *self.problems, Problem("not-a-scene", message, source.location(()), "it starts with 'heun: 1'")
             )
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
-        settings, problems = of_words(overrides)
+        settings, problems = of_words(overrides) if isinstance(overrides, Mapping) else ([*overrides], [])
         settings = [*(settings_of(case, source) if case is not None else ()), *settings]
         given, self.set, unset = override(without_empty, settings)
         self.warnings += taken_in_si(without_empty, given, self.set) if self.set else ()

@@ -67,7 +67,7 @@ class Told(NamedTuple):
 
     def value(self, number: float, at: float | None = None) -> Value:
         """A number as it is kept, or the word in its place; at: its instant."""
-        horizon = self.results.accuracy.get("horizon")
+        horizon = self.results.horizon
         if at is not None and horizon is not None and at >= horizon:
             return BEYOND
         if np.isfinite(number):

@@ -86,7 +86,7 @@ def record_of(course: KeptCourse, page: Page, scope: KeptScope) -> KeptRun:
         model={key: count for key, count in results.model.items() if type(count) is int},
         time=span | ({"last_error": ending} if ending is not None else {}),
         even_at=course.even_at.tolist(),
-        horizon=results.accuracy.get("horizon"),
+        horizon=results.horizon,
         open=sorted(_open(results, scope.wanted)),
         numbers={path: course.number(path) for path in course.own},
         certain_sums=_sums(told, page),

@@ -63,7 +63,7 @@ def _of_unit(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
     if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
         return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
     labels = replace(labels_for_units(study.spec), units=SI)
-    if is_of_load(kind, unit) and study.results.accuracy.get("horizon") is None:
+    if is_of_load(kind, unit) and study.results.horizon is None:
         return error_of_load(study.results, labels, of, kind, unit) or None
     return certainty(study.results, labels, study.magnitudes).error(kind, unit) or None
 

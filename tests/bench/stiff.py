@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tests.shared.governors import GOVERNOR
+from tests.shared.published import spec_at
 
 FRICTION = """
 heun: 1
@@ -28,8 +28,8 @@ analysis: {duration: 2, samples: 21}
 """
 
 STIFF_SCENES = {
-    "governor, 1 s": GOVERNOR,
-    "governor, 10 s": GOVERNOR.replace("times: [0, 0.1, 0.2, 0.5, 1]", "times: [0, 1, 2, 5, 10]"),
+    "governor, 1 s": spec_at("governor", [0, 0.1, 0.2, 0.5, 1], 1e-9),
+    "governor, 10 s": spec_at("governor", [0, 1, 2, 5, 10], 1e-9),
     "friction of 1e-6": FRICTION,
     "wire": WIRE.replace("DAMPING", "0"),
     "wire, damped": WIRE.replace("DAMPING", "2e4"),

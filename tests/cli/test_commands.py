@@ -326,7 +326,7 @@ def test_no_trouble_reaches_a_user_as_a_traceback(
     def fail(*_: object, **__: object) -> None:
         raise trouble
 
-    monkeypatch.setattr("heuncli.commands.run.command.load", fail)
+    monkeypatch.setattr("heuncli.commands.run.command.read", fail)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun("run", "hanging.yaml")
     assert (done.returncode, done.stdout) == (code, "")

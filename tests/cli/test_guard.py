@@ -64,8 +64,8 @@ def test_what_is_read_stays(
     named: Callable[[Path], str],
 ) -> None:  # fmt: skip
     """Refused before anything is solved."""
-    for module in ("run.scene", "check.checking"):
-        monkeypatch.setattr(f"heuncli.commands.{module}.solve", None)
+    for solving in ("run.scene.solve_spec", "check.checking.solve"):
+        monkeypatch.setattr(f"heuncli.commands.{solving}", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
     form = () if writer[1] != "-o" else ("--format", "json")
     done = heun(writer[0], "scene.yaml", writer[1], named(scene / read), *form)

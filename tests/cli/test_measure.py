@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.cli import measure
 from heuncli.errors import HeunError
+from heuncli.telling import measure
 from tests.shared.fakes import ACCURATE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))

@@ -112,7 +112,7 @@ def test_a_library_that_finds_no_memory(heun: Heun, monkeypatch: pytest.MonkeyPa
     def fail(*_: object, **__: object) -> None:
         raise ImportError(said)
 
-    monkeypatch.setattr("heuncli.commands.run.command.load", fail)
+    monkeypatch.setattr("heuncli.commands.run.command.read", fail)
     assert heun("run", "hanging.yaml").returncode == code
 
 

@@ -15,7 +15,6 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.commands.sweep.cluster import flow as cluster
 from heuncli.commands.sweep.cluster import lots as cluster_lots
@@ -23,6 +22,7 @@ from heuncli.commands.sweep.cluster.door import ClusterGone
 from heuncli.commands.sweep.cluster.flow import WORKER_DIED, answers_of
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
+from heuncli.telling import measure
 from heuncli.variants.asking import Answer, Asker, Recipe
 from heuncli.variants.axes import axis_of
 from heuncli.variants.plans import Plan, plan_of

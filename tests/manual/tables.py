@@ -236,7 +236,9 @@ def renew(table: Table) -> None:
 
 
 if __name__ == "__main__":
-    for each in TABLES:
+    from tests.manual.proof import PROOF  # which takes a second or two: the cases are solved
+
+    for each in (*TABLES, PROOF):
         renew(each)
     codes.PAGE.write_text(codes.written(), encoding="utf-8")
     HELP.write_text(help_of_typer(), encoding="utf-8")

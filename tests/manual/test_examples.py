@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import doctest
 import io
 import json
 import re
@@ -74,6 +75,26 @@ def test_shown_output_is_the_output(shown: list[str], capsys: pytest.CaptureFixt
 def steady(line: str) -> str:
     """A line without its error estimates, which differ in the last bits from machine to machine."""
     return re.sub(r"\de-\d+", "#", line)
+
+
+@pytest.mark.heavy
+@pytest.mark.usefixtures("beside_specs")
+@pytest.mark.parametrize("name", [name for name in TEXTS if blocks(name, "pycon")])
+def test_python_answers_as_shown(name: str) -> None:
+    """The lines of a page one after the other, as somebody types them."""
+    pytest.importorskip("pandas")
+    text = "\n".join(blocks(name, "pycon"))
+    examples = doctest.DocTestParser().get_doctest(text, {}, name, None, None)
+    told: list[str] = []
+    found = doctest.DocTestRunner(optionflags=doctest.ELLIPSIS).run(examples, out=told.append)
+    assert found.attempted and not found.failed, "".join(told)
+
+
+@pytest.mark.heavy
+@pytest.mark.usefixtures("beside_specs")
+@pytest.mark.parametrize("text", [block for name in TEXTS for block in blocks(name, "python") if "heuncli" in block])
+def test_programs_run(text: str) -> None:
+    exec(compile(text, "example", "exec"), {})
 
 
 WHOLE = {f"{name}: {block.splitlines()[1]}": block for name in TEXTS for block in blocks(name, "yaml")

@@ -51,7 +51,7 @@ REDUNDANT = {"heuncli.redundancy.resolve", "heuncli.redundancy.self_stress", "he
 RARE = {
     "heuncli.spec.tables",
     "heuncli.redundancy.advice",
-    "heuncli.cli.measure",
+    "heuncli.telling.measure",
     "heuncli.study.ask.measure",
     "heuncli.study.ask.expectations",
     "heuncli.report.export",
@@ -90,7 +90,7 @@ def test_a_plain_run_loads_what_it_needs() -> None:
         (("run", "-"), BAR, SHAPED),
         (("run", "-"), DOOR, REDUNDANT),
         (("model", "-"), DOOR, {"heuncli.redundancy.advice"}),
-        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.cli.measure"}),
+        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.telling.measure"}),
         (("run", "-", "--format", "json"), CHAIN, {"heuncli.report.export"}),
         (("run", "--help"), "", {"heuncli.cli.app", "typer"}),
     ],

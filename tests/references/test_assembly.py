@@ -9,12 +9,12 @@ import pytest
 
 from heuncli.assembly.assemble import assemble
 from heuncli.mechanism.model import Mechanism
+from tests.oracle.published import START, andrews_angles
 from tests.shared.drafted_mechanisms import X, Y, Z, body, joint, largest_gap, largest_rate_gap, point, scene, turned
+from tests.shared.published import printed_values
 
-# Andrews' angles at the start, as printed in the IVP test set
-B, TH, G, PH = -0.0617138900142764496, 0.0, 0.455279819163070380, 0.222668390165885885
-DE, OM, EP = 0.487364979543842550, -0.222668390165885885, 1.23054744454982119
-ANGLES = {"K1": B, "K2": B + TH, "K3": G, "K4": PH + DE, "K5": DE, "K6": OM + EP, "K7": EP}
+ANGLES = andrews_angles(START)
+B = ANGLES["K1"]
 CENTRES = {
     "K1": (0.00092, 0, 0),
     "K2": (-0.0115, 0, 0),
@@ -85,22 +85,16 @@ def test_bricard_is_drawn_closed() -> None:
     assert np.all(a.rotation == np.eye(3))
 
 
-# t, P3 x y z, crank rate (manual/references.md, "Bricard", independent solution)
-TURNING = [
-    (0.2, (0.961349551, -0.999281403, -0.037903521), 0.396422914),
-    (0.4, (0.851450939, -0.990499594, -0.13751565), 0.815243721),
-    (0.6, (0.686986932, -0.96451598, -0.264024477), 1.254304362),
-    (0.8, (0.488999685, -0.924805747, -0.380439654), 1.682366997),
-    (1.0, (0.274481319, -0.886707939, -0.462330003), 2.036415381),
-    (1.2, (0.053329821, -0.866844861, -0.498577965), 2.218276932),
-]
+TURNING = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 
 
 @pytest.mark.heavy
-@pytest.mark.parametrize(("time", "hinge", "rate"), TURNING)
-def test_bricard_set_by_its_crank(time: float, hinge: tuple[float, float, float], rate: float) -> None:
-    """The crank angle that brings P3's x where it was published brings y and z there too; rates fit."""
-
+@pytest.mark.parametrize("time", TURNING)
+def test_bricard_set_by_its_crank(time: float) -> None:
+    """The crank angle that brings the hinge's x where it was printed brings y and z there too; rates fit."""
+    printed = printed_values("bricard")
+    hinge = [printed[f"points.r2.P2.position.{axis}", time] for axis in "xyz"]
+    rate = printed["coordinates.P0.rate", time]
     low, high = 0.0, 2.0  # x falls while the crank turns
     for _ in range(32):
         middle = 0.5 * (low + high)

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.run import searches
 from heuncli.report.cut_runs import extremes_of_samples, one_source, runs_of
 from heuncli.report.labels import labels_of
 from heuncli.report.page import Page, page_of
@@ -21,6 +20,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import stretches
 from heuncli.study.workflow import solve
+from heuncli.telling import searches
 
 SPEC = """
 heun: 1

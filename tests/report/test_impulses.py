@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.commands.run.scene import _strict
 from heuncli.errors import SpecError
@@ -25,6 +24,7 @@ from heuncli.spec.load import load
 from heuncli.spec.models import Expect
 from heuncli.spec.rules import not_yet
 from heuncli.study.ask.expectations import compare
+from heuncli.telling import measure
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
 
 T = np.linspace(0.0, 2.0, 5)

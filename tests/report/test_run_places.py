@@ -7,7 +7,6 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.errors import SpecError
 from heuncli.path_hints import readings
@@ -15,6 +14,7 @@ from heuncli.report.export import to_csv
 from heuncli.report.labels import labels_of
 from heuncli.results_paths import find
 from heuncli.run_places import path_of, words_of
+from heuncli.telling import measure
 from tests.shared.scenes import near, study
 
 P, LUG, END, W = 30.0, 0.3, 0.7, 4.0 * 9.81

@@ -7,7 +7,6 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from heuncli.cli import measure
 from heuncli.errors import HeunError, SpecError
 from heuncli.expressions.units import parse_unit
 from heuncli.report.export import to_csv
@@ -18,6 +17,7 @@ from heuncli.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
 from heuncli.spec.entries import fields_of
 from heuncli.spec.format import HeadEntry
 from heuncli.spec.load import load
+from heuncli.telling import measure
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
 
 T = np.linspace(0.0, 2.0, 5)

@@ -9,7 +9,6 @@ from typing import Any
 
 import pytest
 
-from heuncli.commands.run.searches import rows
 from heuncli.integration.evaluator import Evaluator
 from heuncli.kinetostatics import sections
 from heuncli.redundancy import self_stress
@@ -18,6 +17,7 @@ from heuncli.report.page import TABLE_DEFAULT, page_of
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from heuncli.telling.searches import rows
 
 Counts = Counter[str]
 

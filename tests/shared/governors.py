@@ -1,43 +1,10 @@
-"""Flyball governors: the stiff one of reference A05 as text, an arm on a spindle and Porter's as the oracle's dicts."""
+"""Flyball governors as the oracle's dicts: an arm on a spindle, and Porter's."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-G = 9.81
-GOVERNOR = """
-heun: 1
-parameters: {alpha: 30*deg, s: 0.5}
-gravity: [0, 0, -9.81]
-ground: {points: {foot: [0, 0, 0]}}
-bodies:
-  shaft:
-    shapes: [{type: box, center: [0, 0, 0.5], size: [0.01, 0.01, 1], density: 3000}]
-    points: {foot: [0, 0, 0], right: [0.05, 0, 1], left: [-0.05, 0, 1]}
-  slider:
-    shapes: [{type: box, center: [0, 0, 0], size: [0.1, 0.1, 0.1], density: 3000}]
-    points: {middle: [0, 0, 0], right: [0.05, 0, 0], left: [-0.05, 0, 0]}
-  arm_right:
-    shapes:
-      - {type: box, center: [0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
-      - {type: point, at: [1, 0, 0], mass: 5}
-    points: {root: [0, 0, 0], middle: [0.5, 0, 0], tip: [1, 0, 0]}
-  arm_left:
-    shapes:
-      - {type: box, center: [-0.5, 0, 0], size: [1, 0.01, 0.01], density: 3000}
-      - {type: point, at: [-1, 0, 0], mass: 5}
-    points: {root: [0, 0, 0], middle: [-0.5, 0, 0], tip: [-1, 0, 0]}
-joints:
-  spin: {type: pin, from: ground.foot, to: shaft.foot, axis: [0, 0, 1], initial: {angle: 0, rate: 2*pi}}
-  sleeve: {type: slide, from: shaft.foot, to: slider.middle, axis: [0, 0, 1], initial: {travel: s, speed: 0}}
-  right: {type: pin, from: shaft.right, to: arm_right.root, axis: [0, 1, 0], initial: {angle: alpha, rate: 0}}
-  left: {type: pin, from: shaft.left, to: arm_left.root, axis: [0, -1, 0], initial: {angle: alpha, rate: 0}}
-forces:
-  strut_right: {type: spring, from: slider.right, to: arm_right.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
-  strut_left: {type: spring, from: slider.left, to: arm_left.middle, stiffness: 8e5, length: 0.5, damping: 4e4}
-analysis: {times: [0, 0.1, 0.2, 0.5, 1], tolerance: 1e-9}
-"""
 G = 9.81
 
 

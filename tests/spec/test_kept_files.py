@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import measure
 from heuncli.spec.named_files import FileNotKept
 from heuncli.study.model.options import Options
+from heuncli.telling import measure
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import axis_of
 from heuncli.variants.files import with_files, with_more_files

@@ -6,12 +6,13 @@ from heuncli.balancing.study import balance
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
-from heuncli.cli.picture_files import as_file, saved_beside
+from heuncli.cli.picture_files import saved_beside
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
 from heuncli.commands.balance import page as report
 from heuncli.commands.balance.options import options
 from heuncli.commands.balance.request import BalanceRequest
+from heuncli.drawing.as_file import as_file
 from heuncli.report.export import dump
 from heuncli.report.table_units import Units
 from heuncli.spec.load import load

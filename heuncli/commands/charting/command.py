@@ -9,7 +9,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
 from heuncli.cli.output import emit, save
-from heuncli.cli.picture_files import as_file, saved_beside
+from heuncli.cli.picture_files import saved_beside
 from heuncli.cli.progress import progress
 from heuncli.cli.solving import overrides, warn
 from heuncli.cli.target import format_of
@@ -18,6 +18,7 @@ from heuncli.commands.charting.plan import ChartOptions
 from heuncli.commands.charting.request import ChartRequest
 from heuncli.commands.charting.results import ChartResults
 from heuncli.commands.charting.study import chart
+from heuncli.drawing.as_file import as_file
 from heuncli.errors import Problem
 from heuncli.method_rows import AUTO, METHODS, row_of
 from heuncli.records import replace

@@ -28,6 +28,8 @@ OF_A_JOB = ("markdown", "github")  # formats that tell errors, too: nobody sees 
 
 def main(request: CheckRequest) -> int:
     """Run the command; returns the exit code."""
+    if request.references:
+        return _references(request)
     _require_sense(request)
     skipped: list[PassedBy] = []
     found = [one for argument in request.paths for one in specs_below(argument, skipped)]
@@ -35,7 +37,8 @@ def main(request: CheckRequest) -> int:
         if folder.reason:
             say(f"heun: {shown(folder.path)} passed by: {shown(folder.reason)}")
     if not found:
-        raise UsageError(Problem("nothing-to-check", f"no *.yaml in {', '.join(request.paths)}", hint=NAMED))
+        message = f"no *.yaml in {', '.join(request.paths)}" if request.paths else "no PATH is given"
+        raise UsageError(Problem("nothing-to-check", message, hint=NAMED))
     form = format_of(request.format, request.output, FORMATS)
     kept = goldens.files_of(found, request.golden) if request.golden is not None else {}
     orphans = _without_spec(request, found, kept)
@@ -55,6 +58,17 @@ def main(request: CheckRequest) -> int:
     _say_slowest(checked, request.durations)
     codes = [one.exit_code for one in checked] + [FAILED] * (request.strict and bool(orphans))
     return worst([*codes, *_written(checked, request)])
+
+
+def _references(request: CheckRequest) -> int:
+    """The published cases in place of specs; returns the exit code."""
+    from heuncli.commands.check import references  # that only these need
+
+    references.require_alone(request)
+    _require_sense(request)
+    code, checked = references.main(request)
+    _say_slowest(checked, request.durations)
+    return code
 
 
 def _require_sense(request: CheckRequest) -> None:

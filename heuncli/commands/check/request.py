@@ -9,7 +9,10 @@ FORMATS = ("table", "json", "markdown", "github")
 
 
 class CheckRequest(NamedTuple):
-    """Run specs, and folders of specs, against what they `expect`, and against numbers that were kept."""
+    """Run specs, and folders of specs, against what they `expect`, and against numbers that were kept.
+
+    With --references: the cases that others published, against what they printed.
+    """
 
     paths: Annotated[
         tuple[str, ...],
@@ -19,7 +22,10 @@ class CheckRequest(NamedTuple):
             "PATH...",
             completes="spec",
         ),
-    ]
+    ] = ()
+    references: Annotated[
+        bool, Option(("--references",), "Hold published cases against what was printed; PATH: names of some.")
+    ] = False
     format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "|".join(FORMATS))] = None
     output: Annotated[str | None, OUTPUT] = None
     golden: Annotated[str | None, Option(("--golden",), "Hold the numbers against those kept there.", "DIR")] = None

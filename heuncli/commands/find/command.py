@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
@@ -25,6 +24,7 @@ from heuncli.expressions.units import parse_unit
 from heuncli.report.table_units import Units
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
+from heuncli.telling import measure
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
 from heuncli.variants.conditions import condition_of, in_si

@@ -82,7 +82,7 @@ def _name_of(target: str | None, file: str) -> str:
 def _validated(text: str, name: str) -> list[str]:
     """The warnings of the spec that was made. Raises SpecError where its numbers are beyond what is computed with."""
     try:
-        return [f"{problem.message} [{problem.code}]" for problem in load(name, text=text).warnings]
+        return [*map(str, load(name, text=text).warnings)]
     except SpecError as error:
         if all(problem.code == "magnitude" for problem in error.problems):
             raise SpecError(*(problem._replace(location=None) for problem in error.problems)) from None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
 
 from heuncli.cli import files
@@ -12,6 +13,7 @@ from heuncli.commands.new.request import NewRequest
 from heuncli.errors import OutputError, Problem
 from heuncli.foreign_text import shown
 from heuncli.nearest import did_you_mean
+from heuncli.published.files import names, spec_of
 
 FOLDER = Path(__file__).parents[2] / "starters"
 STANDARD_OUTPUT = "-"
@@ -24,14 +26,15 @@ SCHEMA = """\
 def main(request: NewRequest) -> int:
     """Run the command; returns the exit code."""
     known = kinds()
+    published = {name: text_of(name).splitlines()[0].removeprefix("# ") for name in names()}
     if request.kind is None:
-        width = max(map(len, known))
-        emit("".join(f"{kind:<{width}}  {title}\n" for kind, title in known.items()))
+        emit(f"{_listed(known)}\npublished cases, which heun check --references holds against what was printed:\n"
+             f"{_listed(published)}")  # fmt: skip
         return 0
-    if request.kind not in known:
-        hint = f"{did_you_mean(request.kind, known, 'kinds')}; heun new lists them"
+    if request.kind not in {**known, **published}:
+        hint = f"{did_you_mean(request.kind, {**known, **published}, 'kinds')}; heun new lists them"
         raise UsageError(Problem("bad-option", f"new {request.kind}: there is no such kind", hint=hint))
-    text = SCHEMA + (FOLDER / f"{request.kind}.yaml").read_text(encoding="utf-8")
+    text = SCHEMA + text_of(request.kind)
     file = request.file if request.file is not None else f"{request.kind}.yaml"
     if file == STANDARD_OUTPUT:
         emit(text)
@@ -39,6 +42,17 @@ def main(request: NewRequest) -> int:
     _write(text, file)
     say(f"heun: {shown(file)} written; next: heun run {shown(file)}")
     return 0
+
+
+def _listed(titles: Mapping[str, str]) -> str:
+    width = max(map(len, titles))
+    return "".join(f"{kind:<{width}}  {title}\n" for kind, title in titles.items())
+
+
+def text_of(kind: str) -> str:
+    """The spec of a kind, or of a published case."""
+    own = FOLDER / f"{kind}.yaml"
+    return own.read_text(encoding="utf-8") if own.exists() else spec_of(kind)
 
 
 def kinds() -> dict[str, str]:

@@ -7,11 +7,12 @@ from importlib import import_module
 from heuncli.cli.figure_letters import in_letters, require_width
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, save
-from heuncli.cli.picture_files import as_file, picture_form
+from heuncli.cli.picture_files import picture_form
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import asked
 from heuncli.commands.plot.kinds import require_heeded
 from heuncli.commands.plot.request import PlotRequest
+from heuncli.drawing.as_file import as_file
 from heuncli.drawing.figure import Figure
 
 

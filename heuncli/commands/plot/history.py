@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.cli import measure
 from heuncli.cli.solving import all_or_errors
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
@@ -17,6 +16,7 @@ from heuncli.pictures.measured_points import MeasuredPoints
 from heuncli.results_schema import BLOWS, EVENTS
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
+from heuncli.telling import measure
 from heuncli.variants.stated import unit_of
 
 

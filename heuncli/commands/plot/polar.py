@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import choice
 from heuncli.cli.units import units
@@ -21,6 +20,7 @@ from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import NumberKind, result
 from heuncli.study.ask.measure import MeasureRequest
+from heuncli.telling import measure
 
 FORCE_OF = {"joints": 2, "sections": 2, "foundation": 1}  # of whole entries, by how many words these have
 BELOW_FOUNDATION = 3  # words of foundation.supports.NAME

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from heuncli.cli import measure
 from heuncli.cli.units import units
 from heuncli.cli.views import require_view
 from heuncli.commands.plot.asked import PlotAsked
@@ -13,6 +12,7 @@ from heuncli.pictures.courses import title_of
 from heuncli.pictures.scenes import scene
 from heuncli.pictures.traces import CENTER
 from heuncli.study.ask.measure import MeasureRequest
+from heuncli.telling import measure
 
 REPORTS = ("bodies", "joints", "impulses")  # of the results: where all of it stands, and what acts
 

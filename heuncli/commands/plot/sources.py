@@ -60,7 +60,7 @@ def instants_before_horizon(source: Pictured, words: str) -> Array:
     """The instants of --at in a run, (n,) ascending. Raises UsageError, of those from the horizon on, too."""
     results = source.study.results
     found = instants(words, results.time)
-    horizon = results.accuracy.get("horizon")
+    horizon = results.horizon
     if horizon is not None and found[-1] >= horizon:
         late = found[found >= horizon][0]
         message = f"--at {late:.6g}: from t = {horizon:.6g} s on nothing is claimed, and so nothing is drawn"

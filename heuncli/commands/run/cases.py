@@ -35,7 +35,7 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
     for name, one in cases.items():
         study, pieces = solved(task, one)
         told[name] = "".join(pieces)
-        if not task.asked:
+        if not (task.asked or task.counted):
             runs[name] = keep(study, task.what.reports)
         codes.append(leave(task, one, study, f"heun: case {name}"))
     emit(_text(task, cases, told, runs), task.request.output)
@@ -52,6 +52,8 @@ def _text(task: RunTask, cases: Mapping[str, Spec], told: Mapping[str, str], run
         return "".join(f"{name} {line}\n" for name, text in told.items() for line in text.splitlines())
     if task.form == "csv":
         return "".join(_csv(told))
+    if task.counted:
+        return "\n".join(told.values())
     table = _table(envelope(runs), task.units, _notes(runs))
     if task.form == "markdown":
         return "\n".join([*told.values(), markdown(table)])

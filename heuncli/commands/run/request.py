@@ -65,6 +65,27 @@ class RunRequest(NamedTuple):
             completes="measure",
         ),
     ] = ()
+    collective: Annotated[
+        str | None,
+        Option(
+            ("--collective",),
+            "Load collectives of these numbers over the motion: rainflow cycles, level crossings.",
+            "PATH,...",
+            completes="collective",
+        ),
+    ] = None
+    slope: Annotated[
+        str | None, Option(("--slope",), "Damage-equivalent ranges for these slopes of Wöhler lines.", "M,...")
+    ] = None
+    cycles: Annotated[
+        float | None,
+        Option(("--cycles",), "Of how many cycles equivalent ranges are. Default: one each time.", "N"),
+    ] = None
+    bins: Annotated[int | None, Option(("--bins",), "Classes of ranges and means. Default: 10.", "N")] = None
+    repeat: Annotated[
+        str | None,
+        Option(("--repeat",), "The motion is a cycle that is run through N times, or (closed) for ever.", "N|closed"),
+    ] = None
     method: Annotated[str | None, METHOD] = None
     step: Annotated[float | None, STEP] = None
     tolerance: Annotated[float | None, TOLERANCE] = None

@@ -10,33 +10,27 @@ import numpy as np
 from heuncli.cli.output import say
 from heuncli.cli.solving import instants, timings, warn
 from heuncli.cli.units import TABLES
-from heuncli.commands.run import searches
 from heuncli.commands.run.request import RunRequest
+from heuncli.door.solving import solve_spec
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
-from heuncli.report.cut_runs import LOADS
-from heuncli.report.extremes_tables import NOT_SEARCHED
 from heuncli.report.heading import write_heading, write_heading_markdown
 from heuncli.report.labels import Labels, labels_of
-from heuncli.report.page import page_of
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextTable, markdown, plain
 from heuncli.results import Results
-from heuncli.results_schema import SHARES
 from heuncli.spec.models import Spec
 from heuncli.stored_arrays import StoredArray, in_parts
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.options import Options
-from heuncli.study.model.selection import EntryKeys, Selection
-from heuncli.study.workflow import solve
+from heuncli.study.model.selection import Selection
+from heuncli.telling.tables import TablesAsked, tables_of
 
 if TYPE_CHECKING:
+    from heuncli.commands.run.collective import CollectiveTask
     from heuncli.study.ask.measure import MeasureRequest
-
-AXIS: EntryKeys = ("foundation", "axis")
-AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
 
 
 class RunTask(NamedTuple):
@@ -48,17 +42,22 @@ class RunTask(NamedTuple):
     what: Selection
     asked: Sequence[MeasureRequest]
     units: Units
+    counted: CollectiveTask | None = None
 
 
 def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
     """A scene solved, and what is told of it as text, in pieces that are made as they are asked for."""
     request, what = task.request, task.what
+    study = solve_spec(spec, task.options).study
     with placed(spec):
-        study = solve(spec, task.options)
         if task.asked:
-            from heuncli.cli import measure
+            from heuncli.telling import measure
 
             return study, [measure.write(task.asked, study, task.form)]
+        if task.counted is not None:
+            from heuncli.commands.run.collective import told
+
+            return study, [_counted(task, study, told(task.counted, study, task.form, task.units))]
         named = (request.only is not None or spec.report is not None) and "foundation" in what.reports
         labels = replace(labels_of(spec), units=task.units)
         if task.form not in TABLES:
@@ -70,7 +69,7 @@ def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
     """Tell warnings and times; returns the exit code."""
     later = list(study.later_warnings)
     if task.asked:
-        from heuncli.cli import measure
+        from heuncli.telling import measure
 
         later += measure.warnings(task.asked, study)
     warnings = warn(spec, study.results, task.request.quiet, place, later)
@@ -88,32 +87,21 @@ def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Ite
 
 
 def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
-    wanted = what.reports
     at = instants(request.at, study.results.time) if request.at is not None else None
-    shown = study.results if at is None else study.resample(at)
-    page = page_of(study.results, labels, study.magnitudes, details=details)
-    if study.results.impulses:
-        page = page._replace(struck=study.struck_along([load.name for load in LOADS]))
-    one = len(study.results.time) == 1
-    extremes = None
-    if not (request.all or at is not None or (one and not page.has_runs)):
-        extremes = searches.rows(page, study, wanted)
-        if page.has_runs:
-            page = page._replace(along_runs=searches.along_runs(page, study))
-    shares = study if SHARES in wanted else None
-    if extremes is None or one:
-        tables = page.instants(shown, every_cut=request.all, searched=extremes, shares=shares)
-    else:
-        tables = page.extremes(extremes, shares)
-        if not extremes.searched:
-            tables.insert(0, TextTable("", notes=(NOT_SEARCHED,)))
-        if AXIS in what.entries:
-            tables.append(TextTable("", notes=(AT_INSTANTS,)))
-    if not tables:
-        tables = [TextTable("", notes=(f"nothing to show of {', '.join(sorted(wanted))}: the scene has none",))]
+    tables = tables_of(study, labels, TablesAsked(what, at, request.all, details))
+    return _headed(request, form, study, tables)
+
+
+def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
+    """Tables below what was solved, and how well."""
     if form == "markdown":
         return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
     return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
+
+
+def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
+    """Collectives as text."""
+    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
 from heuncli.cli.options import FORMATS
@@ -24,6 +23,7 @@ from heuncli.commands.sensitivity.spread_words import spreads_of
 from heuncli.errors import Problem
 from heuncli.spec.source import text_in
 from heuncli.study.model.options import Options
+from heuncli.telling import measure
 from heuncli.variants.asking import Asker, Measured, Recipe
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import partial
 
-from heuncli.cli import jobs, measure, memory
+from heuncli.cli import jobs, memory
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file, same_file
 from heuncli.cli.output import say
@@ -28,6 +28,7 @@ from heuncli.spec.source import text_in
 from heuncli.study.model.memory_estimate import Room
 from heuncli.sweeps.rows import SweepHead, SweptMeasure
 from heuncli.sweeps.store.store import Store
+from heuncli.telling import measure
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from functools import partial
 from itertools import chain
 
-from heuncli.cli import measure
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import spec_among
 from heuncli.commands.tune.request import TuneRequest
@@ -17,6 +16,7 @@ from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest
+from heuncli.telling import measure
 from heuncli.variants.asking import Asker
 from heuncli.variants.axes import INTERVAL_HINT, AxisError, Interval, interval_of
 from heuncli.variants.conditions import MeasureCondition, condition_of, in_si

@@ -125,7 +125,7 @@ class RobotCoordinates:
             self.fields.report("import-mimic", element, joint.path, message, hint)
             return
         alike = QUANTITIES[self.types[follows.leader.name]] == quantity
-        remark = f"mimic: follows {leader}; its law of time is to be that of hold_{leader}, by this rule"
+        remark = f"mimic: follows {leader} by this rule; of a motion the law of hold_{leader} stands here, too"
         self._drive(name, quantity, ratio(leader, follows.multiplier, follows.offset, alike), remark)
 
     def _limits(self, joint: UrdfJoint, quantity: JointQuantity) -> str:

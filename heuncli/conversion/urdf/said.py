@@ -17,7 +17,7 @@ from heuncli.conversion.urdf.links import Linked, links_of
 from heuncli.conversion.urdf.masses import LinkMass
 from heuncli.conversion.urdf.points import RobotPoints
 from heuncli.conversion.urdf.tree import LinkTree
-from heuncli.errors import SpecError
+from heuncli.errors import Problem, SpecError
 from heuncli.nearest import listed
 from heuncli.records import record
 from heuncli.spec.models import Vec
@@ -67,7 +67,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         stops=coordinates.stops,
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
-        left_out=tuple(coordinates.left_out),
+        left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),
     )
 
 
@@ -102,6 +102,15 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
         elif joint is not None and joint.kind == "planar":
             found[own.carrier] = {"near": {"position": origin}}
     return found
+
+
+def _undamped(judged: JudgedRobot, fields: UrdfFields) -> Iterator[Problem]:
+    """Damping and friction in joints that have no one coordinate to resist."""
+    for joint in judged.tree.above.values():
+        if joint.movable and not joint.single and (joint.damping or joint.friction):
+            message = f"the damping and friction of a joint of type {joint.kind} are not taken over"
+            hint = "a force of type damper resists in a plane, a couple in time what floats"
+            yield fields.problem("import-left-out", joint.element, joint.path, message, hint)
 
 
 def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:

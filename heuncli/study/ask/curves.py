@@ -101,7 +101,7 @@ def instants_where(study: Study, curve: Curve, x: Array) -> Array:
     """The instants at which the number that x is of has its values, (n,), where it rises or falls all the time."""
     path = curve.x_of
     assert path is not None
-    horizon, times = study.results.accuracy.get("horizon"), study.search_times
+    horizon, times = study.results.horizon, study.search_times
     times = times if horizon is None else times[times < horizon]
     q = numbers_at(study, path, times)
     require_known(study, curve, path, times, q)
@@ -157,7 +157,7 @@ def require_one_instant(curve: Curve, path: str, times: Array, highest: Array, w
 
 def require_claimed(study: Study, curve: Curve, times: Array) -> None:
     """Refuse points beyond the horizon. Raises NotComparable."""
-    horizon = study.results.accuracy.get("horizon")
+    horizon = study.results.horizon
     if horizon is not None and (times >= horizon).any():
         refuse(NOT_CLAIMED.format(horizon), curve, int((times >= horizon).argmax()))
 

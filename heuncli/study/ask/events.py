@@ -179,7 +179,7 @@ class WatchedNumber(NamedTuple):
 
 def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes:
     """When a number of the results comes below its limit, or above it, and back; up to the horizon."""
-    times, horizon = study.search_times, study.results.accuracy.get("horizon")
+    times, horizon = study.search_times, study.results.horizon
     if horizon is not None:
         times = times[times < horizon]
     wanted = report_of(condition.of)

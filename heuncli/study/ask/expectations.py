@@ -105,7 +105,7 @@ def _found(study: Study, item: Expect) -> Array:
     if not found.timed:
         return found.values
     if item.at is not None:
-        return np.asarray(found.values[_instant(results.time, item.at)])
+        return np.asarray(found.values[instant_among(results.time, item.at)])
     return found.values[0] if len(results.time) == 1 else found.values
 
 
@@ -115,7 +115,8 @@ def _lost_from(study: Study, item: Expect) -> float | None:
     return lost_from(MeasureRequest(how, item.of, item.at), study)
 
 
-def _instant(times: Array, at: float) -> int:
+def instant_among(times: Array, at: float) -> int:
+    """The number of an instant of the output. Raises HeunError [no-such-instant]."""
     location = int(np.argmin(np.abs(times - at)))
     if abs(times[location] - at) > tolerances.SAME_INSTANT * max(float(np.ptp(times)), abs(at)):
         message = f"t = {at:.6g} s is not an instant of the output; the nearest is {times[location]:.6g} s"

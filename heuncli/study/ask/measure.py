@@ -90,7 +90,7 @@ def value(asked: MeasureRequest, study: Study) -> Peak:
 def lost_from(asked: MeasureRequest, study: Study) -> float | None:
     """The horizon, where the number that is asked for lies beyond it, or may: that of a run that goes on beyond it."""
     results = study.results
-    horizon, there = results.accuracy.get("horizon"), study.numbers(asked.path)
+    horizon, there = results.horizon, study.numbers(asked.path)
     if horizon is not None and there.keys[0] == BLOWS:
         return float(horizon) if time_of_blow(results, there) >= horizon else None
     if there.keys[0] == EVENTS:  # of a run that goes on beyond its horizon more may follow

@@ -23,6 +23,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch
+from heuncli.study.search.instants import MOST_SEARCHED as MOST_INSTANTS
 from heuncli.study.search.instants import search_times
 from heuncli.study.solve.history import History, resample
 
@@ -93,15 +94,20 @@ class Study:
     @cached_property
     def search_times(self) -> Array:
         """Instants close enough to bracket every extreme, (n,) ascending."""
-        times, enough = search_times(self.setup, self.history)
+        times, enough = self.close_times()
         if not enough:
             self.later_warnings[TOO_FEW.format(len(times))] = None
+        return times
+
+    def close_times(self, most: int = MOST_INSTANTS) -> tuple[Array, bool]:
+        """Instants close enough to bracket every turn, (n,) ascending, so many at most; whether that is enough."""
+        times, enough = search_times(self.setup, self.history, most)
         if self.setup.cuts and len(times) > 1:
             from heuncli.study.search.passages import may_pass, passages  # where there are sections
 
             if may_pass(self.setup):
                 times = extremes.distinct(np.concatenate([times, passages(lambda at: self._recovery(at, NONE), times)]))
-        return extremes.filled(times)
+        return extremes.filled(times), enough
 
     def resample(self, times: Array) -> Results:
         """The results of the run at other instants within it, (n,) ascending; of a state those of its one instant."""
@@ -221,7 +227,7 @@ class Study:
         times = self.search_times if times is None else times
         if whole and len(searched.errors) * len(times) > MOST_SEARCHED:
             times, between = self.results.time, False
-        horizon = self.results.accuracy.get("horizon")
+        horizon = self.results.horizon
         if horizon is not None:
             times = times[times < horizon] if times[0] < horizon else times[:1]
         reports = frozenset(REPORTS) if wanted is None else with_shared(wanted)

@@ -20,6 +20,7 @@ from heuncli.results import Array, Extremes, Indices, Mask, Results
 from heuncli.study.search.intervals import FOURTH, Intervals, ceiling, completed, joined, promised
 
 ColumnsAt = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)
+HeightToBeat = Callable[[Array, Array, Indices], Array]  # by the heights at both ends of intervals, and their targets
 
 FIRST = 4  # intervals of a quantity that are asked in the first round, twice as many in each that follows
 FEW = 5  # instants of a smooth stretch, the least that show how it bends, and how that changes
@@ -169,6 +170,14 @@ def intervals_of(
     times: Array, values: Array, asked: Targets, found: Best, sides: tuple[float, ...] = BOTH
 ) -> Intervals:
     """The intervals of the grid that promise more than the best on it, on these sides."""
+    best = found.height + asked.enough(found.height)
+    return intervals_above(times, values, asked, lambda b, c, target: best[target], sides)
+
+
+def intervals_above(
+    times: Array, values: Array, asked: Targets, to_beat: HeightToBeat, sides: tuple[float, ...] = BOTH
+) -> Intervals:
+    """The intervals of the grid that promise more than what they have to beat, on these sides."""
     step = times[1:] - times[:-1]
     smooth = ~sides_of_jumps(times)
     heights = values[:, asked.column]
@@ -181,15 +190,14 @@ def intervals_of(
     most = np.maximum(np.abs(left), np.abs(right))
     doubt = FOURTH * most
     inner = np.concatenate([[False], smooth, [False]])
-    to_beat = found.height + asked.enough(found.height)
     parts = []
     for side in sides:
         target = owner if side < 0.0 else owner + asked.n
         b, c, before, after, rising, falling = (side * x for x in (heights[:-1], heights[1:], left, right, up, down))
         with np.errstate(invalid="ignore"):
-            k, j = np.nonzero((ceiling(b, c, most, rising, falling) > to_beat[target]) & smooth[:, None])
+            k, j = np.nonzero((ceiling(b, c, most, rising, falling) > to_beat(b, c, target)) & smooth[:, None])
         some = (x[k, j] for x in (b, c, before, after, doubt, rising, falling))
-        more = asked.possible(promised(*some), target[j]) > to_beat[target[j]]
+        more = asked.possible(promised(*some), target[j]) > to_beat(b[k, j], c[k, j], target[j])
         k, j = k[more], j[more]
         # neighbours beyond a jump or the end are none: such are made up from the bends
         w, f, g = step[k], heights[k, j], heights[k + 1, j]

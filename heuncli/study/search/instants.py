@@ -18,18 +18,18 @@ FINER = 4  # times as closely the expressions in time are looked at
 MOST_SEARCHED = 100_000
 
 
-def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
+def search_times(setup: Setup, history: History, most: int = MOST_SEARCHED) -> tuple[Array, bool]:
     """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
 
     The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
     sides of all jumps; where loads and drives in time have their own extremes; and so many that no body turns far
-    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn.
+    between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn. most: so many, about.
     """
     times = history.times
     if history.checked is None:
         return times, True
     marks = np.concatenate([[0.0], history.checked.run.ends])
-    per_step = max(1, min(len(WITHIN_STEP), MOST_SEARCHED // max(len(marks), 1)))
+    per_step = max(1, min(len(WITHIN_STEP), most // max(len(marks), 1)))
     inner = (marks[:-1, None] + np.diff(marks)[:, None] * np.array(WITHIN_STEP[:per_step])).ravel()
     # a jump has a value on either side of it
     grid = inner
@@ -40,9 +40,9 @@ def search_times(setup: Setup, history: History) -> tuple[Array, bool]:
     found = own_extremes(setup.scene.mechanism, grid)
     grid = distinct(np.concatenate([grid, *found])) if found else grid
     turns = np.ceil(turned_between(setup, history, grid) / TURNED)
-    parts = np.clip(turns, 1, MOST_SEARCHED + 1).astype(int)  # what turns faster is not searched to its turns
-    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= MOST_SEARCHED
-    parts = np.minimum(parts, max(1, MOST_SEARCHED // len(grid))) if not enough else parts
+    parts = np.clip(turns, 1, most + 1).astype(int)  # what turns faster is not searched to its turns
+    enough = per_step == len(WITHIN_STEP) and int(parts.sum()) <= most
+    parts = np.minimum(parts, max(1, most // len(grid))) if not enough else parts
     first = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
     return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough

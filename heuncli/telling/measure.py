@@ -1,4 +1,7 @@
-"""`--measure`: single numbers of a run, such as `max abs sections.middle.M1` or `at 0.5 energy.kinetic`."""
+"""`--measure`: single numbers of a run, such as `max abs sections.middle.M1` or `at 0.5 energy.kinetic`.
+
+asked_by: what asked for them, as it is called in messages.
+"""
 
 from __future__ import annotations
 
@@ -9,9 +12,7 @@ from functools import partial
 from itertools import pairwise
 from typing import Any, TypeVar
 
-from heuncli.cli.entry import UsageError
-from heuncli.cli.solving import all_or_errors
-from heuncli.errors import Finding, Problem, SpecError
+from heuncli.errors import Finding, Problem, SpecError, UsageError
 from heuncli.report.digits import OPEN, UNKNOWN
 from heuncli.report.export import dump
 from heuncli.results_paths import find
@@ -21,6 +22,7 @@ from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
 from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, NotOneNumber, Peak, lost_from, value
 from heuncli.study.ask.study import Study
+from heuncli.telling.asked_values import all_or_errors
 
 T = TypeVar("T")
 PATH = re.compile(r"[\w.]+(?:[@:][\w.:+-]*)*\Z")
@@ -31,10 +33,10 @@ OTHER_WORDS = {
 }  # fmt: skip
 
 FORMS = "expected [max | min | max abs | first | final | at T] PATH"
-HINT = "such as --measure 'max abs sections.middle.M1'"
+SUCH = "such as {} 'max abs sections.middle.M1'"
 
 
-def parse(text: str) -> MeasureRequest:
+def parse(text: str, asked_by: str = "--measure") -> MeasureRequest:
     """The MeasureRequest that the words mean. Raises UsageError."""
     words = text.split()
     match words if words and PATH.match(words[-1]) else []:
@@ -46,23 +48,23 @@ def parse(text: str) -> MeasureRequest:
             return MeasureRequest("abs", path)
         case ["at", t, path] if _is_number(t):
             return MeasureRequest("at", path, float(t))
-    raise UsageError(Problem("bad-option", f"--measure '{text}': {FORMS}", hint=meant(text)))
+    raise UsageError(Problem("bad-option", f"{asked_by} '{text}': {FORMS}", hint=meant(text, asked_by)))
 
 
-def meant(text: str) -> str:
+def meant(text: str, asked_by: str = "--measure") -> str:
     """A hint: the words in the order and spelling in which they are read, where that makes them a form."""
     if "," in text:
-        return "one number each: --measure may be repeated"
+        return f"one number each: {asked_by} may be repeated"
     plain = re.sub(r"\[(\d+)\]", r".\1", text)
     words = [OTHER_WORDS.get(word.lower(), word) for word in re.split(r"[\s()|]+", plain) if word]
     words.sort(key=lambda word: "." in word and not _is_number(word))
     proposed = " ".join(words)
     if proposed == text or "," in proposed:
-        return HINT
+        return SUCH.format(asked_by)
     try:
         parse(proposed)
     except UsageError:
-        return HINT
+        return SUCH.format(asked_by)
     return f"did you mean '{proposed}'?"
 
 
@@ -130,7 +132,11 @@ def line(asked: MeasureRequest, study: Study) -> str:
 
 def block(asked: MeasureRequest, study: Study) -> dict[str, Any]:
     """One number for JSON."""
-    peak, horizon = measured(asked, study)
+    return described(asked, study, *measured(asked, study))
+
+
+def described(asked: MeasureRequest, study: Study, peak: Peak, horizon: float | None) -> dict[str, Any]:
+    """A number as it was `measured`, for JSON: with its instant, and along a run of cuts its place."""
     found = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
     if "axes" in study.results.model and "joints." in asked.path:
         found["axes"] = study.results.model["axes"]
@@ -153,13 +159,13 @@ def number_of_cut(asked: MeasureRequest, study: Study, row: int) -> int:
     return int(cut_numbers(s)[row])
 
 
-def measured(asked: MeasureRequest, study: Study) -> tuple[Peak, float | None]:
+def measured(asked: MeasureRequest, study: Study, asked_by: str = "--measure") -> tuple[Peak, float | None]:
     """The number, and the horizon where it lies beyond. Raises UsageError."""
     try:
         return value(asked, study), lost_from(asked, study)
     except NotOneNumber as error:
         (problem,) = error.problems
-        raise UsageError(problem._replace(message=f"--measure: {problem.message}")) from None
+        raise UsageError(problem._replace(message=f"{asked_by}: {problem.message}")) from None
 
 
 def warnings(several: Sequence[MeasureRequest], study: Study) -> list[str]:

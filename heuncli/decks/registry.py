@@ -1,0 +1,45 @@
+"""The forms in which load cases are written, a row each: a new one is a module of this folder and a row here.
+
+A module has `written(cases, names)`, the text in pieces, and `notes(cases, names)`, what the user has to know besides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from importlib import import_module
+from typing import Any
+
+from heuncli.decks.naming import DeckNames
+from heuncli.load_cases.model import LoadCases
+from heuncli.named_tuples import NamedTuple
+
+
+class Deck(NamedTuple):
+    """A form: the module that writes it, and whether it knows forces alone, as decks of static loads do."""
+
+    file: str
+    static: bool = True
+
+    def written(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
+        """The text in pieces."""
+        pieces: Iterable[str] = self._module.written(cases, names)
+        return pieces
+
+    def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
+        """What the user has to do that no card does, in sentences."""
+        found: list[str] = self._module.notes(cases, names)
+        return found
+
+    @property
+    def _module(self) -> Any:
+        return import_module(f"heuncli.decks.{self.file}")
+
+
+DECKS = {
+    "csv": Deck("as_csv", static=False),
+    "json": Deck("as_json", static=False),
+    "ansys": Deck("ansys"),
+    "nastran": Deck("nastran"),
+    "calculix": Deck("calculix"),
+    "abaqus": Deck("abaqus"),
+}

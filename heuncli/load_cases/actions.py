@@ -1,0 +1,134 @@
+"""What acts on one body at some instants, each action with its name, its point and who exerts it, in the body's axes.
+
+A distributed load, linear along a line from A to B, is statically equal to two forces at the ends: of the part that is
+q at A and nothing at B, q l/2 in all, two thirds act at A and one third at B, for its resultant stands l/3 from A.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from heuncli.kinetostatics.actions import Action, joint_actions
+from heuncli.kinetostatics.sections import Attachment, attachments, in_body_axes
+from heuncli.load_cases.model import AccelerationField, PointAction
+from heuncli.mechanism.model import GROUND, Mechanism
+from heuncli.named_tuples import NamedTuple
+from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.spec.models import Spec
+from heuncli.study.compose.recovery import Recovery
+
+ROUNDING = 1e-14  # of the largest component of its kind: what is less stands for nothing, and is written as 0
+OUTSIDE = "outside"
+CENTER = "center of mass"
+
+
+class OneAction(NamedTuple):
+    """An action's attachment to the body, over the instants, and its words."""
+
+    kind: str
+    name: str
+    by: str
+    on: Attachment
+    is_line: bool
+
+
+def actions_on(recovery: Recovery, spec: Spec, body: int) -> list[tuple[PointAction, ...]]:
+    """All that acts on a body at each of the recovered instants."""
+    attached = list(_attached(recovery, spec, body))
+    points = spec.bodies[recovery.setup.scene.mechanism.bodies[body].name].points
+    named = {name: np.array(point) for name, point in points.items()}
+    center = recovery.setup.scene.mechanism.bodies[body].center
+    count = len(recovery.recovered.times)
+    return [_tidy([one for own in attached for one in _at(own, k, named, center)]) for k in range(count)]
+
+
+def fields_of(recovery: Recovery, body: int) -> list[AccelerationField]:
+    """How the body's points are accelerated at each of the recovered instants, and what gravity does."""
+    states, gravity = recovery.states, recovery.setup.scene.mechanism.gravity
+    R = states.R[:, body]
+    vectors = [states.a[:, body], np.broadcast_to(gravity, (len(R), 3)), states.omega[:, body], states.alpha[:, body]]
+    a, g, w, u = in_body_axes(R, np.array(vectors))
+    return [AccelerationField(a[k], g[k], w[k], u[k]) for k in range(len(R))]
+
+
+def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
+    """The body's share of every action; a joint's drive and stops beside what its constraint carries."""
+    mechanism, states = recovery.setup.scene.mechanism, recovery.states
+    for action in [*joint_actions(recovery.joints), *recovery.applied]:
+        on = attachments(body, states, [action])
+        by = [OUTSIDE] * len(on) if action.spread else _exerted_by(mechanism, action, body)
+        for own, other in zip(on, by, strict=True):
+            yield OneAction(_kind(action, spec), action.name, other, own, bool(action.spread))
+
+
+def _exerted_by(mechanism: Mechanism, action: Action, body: int) -> list[str]:
+    """Who exerts an action on a body, for each of its ends there."""
+    if action.from_ is None:
+        return [OUTSIDE] * (action.to.body == body)
+    ends = (action.to.body, action.from_.body)
+    return [_name(mechanism, other) for own, other in (ends, ends[::-1]) if own == body]
+
+
+def _name(mechanism: Mechanism, body: int) -> str:
+    return "ground" if body == GROUND else mechanism.bodies[body].name
+
+
+def _kind(action: Action, spec: Spec) -> str:
+    """The word for an action: that of its type in the spec, of what is no load its own."""
+    if action.kind != "load":
+        return action.kind
+    return spec.forces[action.name].type if action.name in spec.forces else "impulse"
+
+
+def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> Iterator[PointAction]:
+    """What it does at an instant; of a distributed load at both ends of its line."""
+    at, to = (None if x is None else (x[k] if x.ndim == 2 else x) for x in (own.on.at, own.on.to))
+    assert at is not None
+    force, moment = own.on.force[k], own.on.moment[k]
+    words = own.kind, own.name, own.by
+    if to is None:
+        yield PointAction(*words, _point_at(at, named, center), at, force, moment)
+        return
+    run = to - at
+    densest = force / (0.5 * float(np.sqrt(run @ run)))
+    for share, end, per_length in ((2.0 / 3.0, at, densest), (1.0 / 3.0, to, np.zeros(3))):
+        yield PointAction(*words, _point_at(end, named, center), end, share * force, moment, per_length)
+
+
+def _point_at(at: Array, named: Mapping[str, Array], center: Array) -> str:
+    """The name of the body's point that is there, or nothing."""
+    found = next((name for name, point in named.items() if np.array_equal(point, at)), "")
+    return found or (CENTER if np.array_equal(center, at) else "")
+
+
+def _tidy(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
+    """The actions without those that do nothing; of a distributed load what acts at one end together."""
+    together: dict[tuple[str, ...], PointAction] = {}
+    for one in actions:
+        key = (one.kind, one.name, one.by, *map(repr, one.at.tolist()))
+        if one.per_length is None or key not in together:
+            key = (*key, str(len(together))) if one.per_length is None else key
+            together[key] = one
+            continue
+        other = together[key]
+        assert other.per_length is not None
+        together[key] = replace(
+            one, force=one.force + other.force, moment=one.moment + other.moment,
+            per_length=one.per_length + other.per_length,
+        )  # fmt: skip
+    found = list(together.values())
+    force, moment, reach = (_largest(found, of) for of in ("force", "moment", "at"))
+    least = ROUNDING * force, ROUNDING * max(moment, force * reach)
+    kept = [replace(one, force=_cut(one.force, least[0]), moment=_cut(one.moment, least[1])) for one in found]
+    return tuple(one for one in kept if one.force.any() or one.moment.any() or one.kind == "joint")
+
+
+def _largest(actions: Sequence[PointAction], of: str) -> float:
+    return max((float(np.abs(getattr(one, of)).max()) for one in actions), default=0.0)
+
+
+def _cut(vector: Array, least: float) -> Array:
+    return np.where(np.abs(vector) <= least, 0.0, vector)

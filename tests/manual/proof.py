@@ -1,0 +1,22 @@
+"""The README's table of published cases, as `heun check --references` tells them: solved, where it is asked for."""
+
+from __future__ import annotations
+
+from heuncli.commands.check.references_told import digits_of, farthest, kinds_of
+from heuncli.published.cases import case_of
+from heuncli.published.files import names
+from tests.manual.tables import Table
+from tests.shared.manual import README
+from tests.shared.published import compared_case
+
+
+def row(name: str) -> tuple[str, ...]:
+    """The line of a case."""
+    case, tables = case_of(name), compared_case(name)
+    numbers = [one for table in tables for one in table.numbers]
+    told = (str(len(numbers)), kinds_of(case), digits_of(numbers), *farthest(tables))
+    return f"`{name}`", f"{case.about}: {case.source}", *told
+
+
+HEAD = ("case", "what, and its source", "numbers", "which are", "digits", "last digits", "of the largest")
+PROOF = Table(README, "Proof", HEAD, [row(name) for name in names()])

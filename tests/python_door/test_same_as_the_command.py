@@ -1,0 +1,135 @@
+"""What Python gets is what the command line writes: numbers to the bit, tables to the letter, errors to the place."""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import heuncli
+from heuncli.results_schema import quantity
+from tests.shared.broken import FILES, head
+from tests.shared.command import Heun
+from tests.shared.folders import SPECS
+
+EVERY = sorted(SPECS.glob("*.yaml"))
+TABLES = ("overhang", "struck_door", "door", "bricard", "six_cylinder", "schlick")
+
+
+def solved(path: Path, **asked: Any) -> heuncli.Solved:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", heuncli.HeunWarning)
+        return heuncli.solve(path, **asked)
+
+
+def leaves(node: Any, keys: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], Any]]:
+    """The numbers of a JSON with the keys that lead to them."""
+    row = quantity(keys) if keys else None
+    if row is not None:
+        yield from [(keys, node)] if row.units else []
+    elif isinstance(node, dict):
+        for key, member in node.items():
+            yield from leaves(member, (*keys, key))
+    elif isinstance(node, list):
+        for number, member in enumerate(node):
+            yield from leaves(member, (*keys, str(number)))
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("path", EVERY, ids=lambda path: path.stem)
+def test_numbers_are_those_of_the_json(heun: Heun, path: Path) -> None:
+    written = json.loads(heun("run", str(path), "--format", "json", "-q").stdout)
+    study = solved(path)
+    own = study.as_dict()
+    written.setdefault("points", own.get("points", {}))  # which JSON leaves out by default
+    own.setdefault("points", {})
+    for one in (own, written):
+        one["work"].pop("seconds")
+    assert own == written
+    told = [*leaves(written)]
+    assert {".".join(keys) for keys, _ in told} == {*study.paths()}
+    for keys, value in told:
+        signal = study[".".join(keys)]
+        there = np.array(value, dtype=np.float64)  # null is nan
+        assert np.array_equal(signal.computed, there, equal_nan=True), keys
+        assert len(signal.components) == np.prod(there.shape[signal.times is not None :])
+        lost = np.isnan(signal.values) & ~np.isnan(there)
+        assert not (lost & ~signal.beyond.reshape(-1, *[1] * (lost.ndim - signal.beyond.ndim))).any()
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("name", TABLES)
+def test_tables_are_those_of_the_command(heun: Heun, name: str) -> None:
+    path = SPECS / f"{name}.yaml"
+    printed = heun("run", str(path)).stdout
+    study = solved(path)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", heuncli.HeunWarning)
+        assert str(study) == printed
+        own, of_joints = study.tables(units="kN,mm", only="joints"), ("--units", "kN,mm", "--only", "joints")
+    # the heading tells how well all that was solved for is known
+    assert own.partition("\n\n")[2] == heun("run", str(path), *of_joints).stdout.partition("\n\n")[2]
+
+
+@pytest.mark.heavy
+def test_measures_are_those_of_the_command(heun: Heun) -> None:
+    asked = {
+        "engine": (
+            "max abs joints.main.force",
+            "at 0.0123 energy.kinetic",
+            "final joints.big.force.y",
+            "model.freedoms",
+        ),
+        "overhang": ("max abs sections.beam.M2", "min sections.beam.Q1"),
+        "struck_door": ("max abs impulses.0.joints.low.force", "impulses.0.energy_jump"),
+    }
+    for name, words in asked.items():
+        path = str(SPECS / f"{name}.yaml")
+        study = solved(Path(path))
+        options = [part for word in words for part in ("--measure", word)]
+        for word, block in zip(words, json.loads(heun("run", path, "--format", "json", *options).stdout), strict=True):
+            found = study.measure(word)
+            assert (float(found), found.at, found.s, found.side, found.cut) == (
+                block["value"], block["at"], block.get("s"), block.get("side"), block.get("cut"),
+            ), word  # fmt: skip
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_errors_are_those_of_the_command(heun: Heun, path: Path) -> None:
+    kind, code, _, _, _, name, value = head(path).groups()
+    written = heun("run", str(path), *(["--set", f"{name}={value}"] if name else []))
+    if kind == "warning" or written.returncode == 0 or name:
+        return
+    with pytest.raises(heuncli.HeunError) as caught, warnings.catch_warnings():
+        warnings.simplefilter("ignore", heuncli.HeunWarning)
+        heuncli.solve(path)
+    assert caught.value.exit_code == written.returncode
+    problems = caught.value.problems
+    assert [str(problem) for problem in problems] == _told(written.stderr, len(problems))
+    assert code in {problem.code for problem in problems}
+    assert all(problem.hint for problem in problems)
+
+
+def _told(stderr: str, count: int) -> list[str]:
+    """The problems that stand on standard error: two lines each, behind the warnings."""
+    lines = [line for line in stderr.splitlines() if not line.startswith("warning:")]
+    return ["\n".join(lines[2 * i : 2 * i + 2]).removeprefix("heun: ") for i in range(count)]
+
+
+def test_warnings_are_those_of_the_command(heun: Heun) -> None:
+    """They are told as they come, at the line that asked; and stay in a list."""
+    path = SPECS / "flat_four_bar.yaml"
+    written = heun("run", str(path)).stderr
+    with pytest.warns(heuncli.HeunWarning) as caught:
+        study = heuncli.solve(path)
+        before = [*study.warnings]
+        str(study)
+    assert [str(one.message) for one in caught] == study.warnings
+    assert len(study.warnings) > len(before)
+    assert {Path(one.filename) for one in caught} == {Path(__file__)}
+    assert [line.removeprefix("warning: heun: ") for line in written.splitlines()] == study.warnings
