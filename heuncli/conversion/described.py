@@ -77,7 +77,7 @@ class DescribedMachine(NamedTuple):
     form: what the file is: `URDF`; file: its name; sha256: of its bytes. told: lines at the head of the spec, behind
     that of its origin. remarks: beside the names of blocks (`parameters`, `bodies`, ...), what holds for all of it.
     left_out: what the file asks for and the spec does not say, as problems with their places: warnings, or under
-    --strict an error.
+    --strict an error, and comments at the head of the spec.
     """
 
     title: str

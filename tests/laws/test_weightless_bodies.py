@@ -66,7 +66,7 @@ joints:
 
 @pytest.mark.parametrize("seed", range(2))
 def test_joints_of_a_carrier_are_kept(seed: int) -> None:
-    """The weld is cut in their place; the loads are those of carriers that are heavier, and next to nothing all the same."""
+    """The weld is cut in their place; the loads are those of carriers that are heavier, yet next to nothing."""
     light, known = (study(stacked(seed, mass)) for mass in ("1e-20", "1e-10"))
     names = [joint.name for joint in light.setup.scene.mechanism.joints]
     assert [names[k] for k in light.setup.scene.layout.spanning.cut] == ["weld"]

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 
-from heuncli.conversion.urdf.fields import XACRO, UrdfFields, alike
-from heuncli.conversion.xml_elements import XmlElement
+from heuncli.conversion.urdf.fields import UrdfFields, alike
+from heuncli.conversion.xml_elements import XACRO, XmlElement
 from heuncli.errors import SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
