@@ -43,8 +43,7 @@ class AskedRun:
     @property
     def horizon(self) -> float | None:
         """The instant [s] from which on nothing is claimed; None where all is."""
-        horizon = self.results.accuracy.get("horizon")
-        return None if horizon is None else float(horizon)
+        return self.results.horizon
 
     @property
     def instants(self) -> Array | None:
