@@ -26,6 +26,7 @@ from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 BASES = ("fixed", "free")
 OF_OPTIONS = {  # fields of ImportAsked, by the options that ask for them
     "free": "--free", "base_free": "--base", "limits": "--limits", "density": "--density", "repair": "--repair",
+    "keyframe": "--keyframe",
 }  # fmt: skip
 FAILED = 1
 
@@ -98,7 +99,9 @@ def _asked(request: ImportRequest) -> ImportAsked:
         raise UsageError(Problem("bad-option", message, hint="with --free; the limits stand in comments either way"))
     words = [word.strip() for word in request.repair.split(",")] if request.repair is not None else []
     density = _density(request.density) if request.density is not None else None
-    return ImportAsked(request.free, request.base == "free", request.limits, density, frozenset(words))
+    return ImportAsked(
+        request.free, request.base == "free", request.limits, density, frozenset(words), request.keyframe
+    )
 
 
 def _density(text: str) -> float:
