@@ -36,6 +36,7 @@ def test_the_kinds_are_listed(heun: Heun) -> None:
     assert max(map(len, lines)) <= 120
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_starter_runs_and_holds_what_it_expects(heun: Heun, folder: Path, kind: str) -> None:
     assert heun("new", kind).returncode == 0
