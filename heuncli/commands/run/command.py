@@ -13,7 +13,7 @@ from heuncli.cli.target import format_of
 from heuncli.cli.units import TABLES, say_what_stays, units
 from heuncli.commands.run.request import FORMATS, RunRequest
 from heuncli.commands.run.scene import RunTask, leave, solved
-from heuncli.door.solving import read
+from heuncli.door import read
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.records import replace
 from heuncli.report.page import EXPORT_DEFAULT
