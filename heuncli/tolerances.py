@@ -74,6 +74,7 @@ HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digi
 
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
+NO_MASS = 1e-12  # of the heaviest body: no digit of a sum of weights that anyone reads
 POINT_MASS = 1e-9  # of m L^2: a body whose radius of gyration is 3e-5 of the scene's size is no point mass yet
 ON_AXIS = 1e-9  # of the size: points typed with ten digits; what is nearer to the thin axis acts on it
 ALONG = 1.0 - 1e-9  # cosine of an axis with that of the missing inertia: 4.5e-5 rad, for the spin it frees is idle

@@ -51,7 +51,8 @@ def drawn_in_place(mechanism: Mechanism, found: Sequence[JointCondition], drawn:
     """Whether the scene is drawn in world coordinates, so that a body's place in the drawing is meant.
 
     Bodies drawn each about its own origin fit at a joint or two by chance; in a scene drawn as it stands, but for a
-    slip, most joints do.
+    slip, most joints do. A joint between two origins fits however bodies are drawn, and tells nothing: a robot may have
+    many such.
     """
     asking = [d for d in found if d.pose.hold != "none"]
     if not asking:
@@ -60,7 +61,13 @@ def drawn_in_place(mechanism: Mechanism, found: Sequence[JointCondition], drawn:
     is_open = np.maximum(distance / lever, angle) > tolerances.DRAWN_IN_PLACE
     kinds = [JOINTS[mechanism.joints[d.joint].kind] for d in asking]
     set_apart = [d.pose != (kind.hold.asks, kind.turn.asks) for d, kind in zip(asking, kinds, strict=True)]
-    return not bool(np.any(is_open & np.array(set_apart))) and 2 * int(np.sum(is_open)) < len(asking)
+    tells = np.array([not _between_origins(mechanism, d) for d in asking])
+    return not bool(np.any(is_open & np.array(set_apart))) and 2 * int(np.sum(is_open & tells)) < int(np.sum(tells))
+
+
+def _between_origins(mechanism: Mechanism, found: JointCondition) -> bool:
+    joint = mechanism.joints[found.joint]
+    return not (np.any(joint.p) or np.any(joint.q))
 
 
 def _way(body: Body, drawn: AssemblyPoses, start: Assembly, i: int, counts: tuple[bool, bool]) -> float:

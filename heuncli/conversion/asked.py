@@ -9,7 +9,7 @@ class ImportAsked(NamedTuple):
     """free: joints are let go, not held by drives; base_free: the root moves, it does not stand on the ground.
 
     limits: limits of joints become stops; density [kg/m^3]: of the shapes of what has no inertia; repair: the faults
-    that are repaired, words of REPAIRS in the reader's package.
+    that are repaired, words of REPAIRS in the reader's package; keyframe: of the file's poses that which is the start.
     """
 
     free: bool = False
@@ -17,3 +17,4 @@ class ImportAsked(NamedTuple):
     limits: bool = False
     density: float | None = None
     repair: frozenset[str] = frozenset()
+    keyframe: str | None = None

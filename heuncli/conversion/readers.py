@@ -46,6 +46,7 @@ READERS = (
         frozenset({"free", "base_free", "limits", "density", "repair"}),
         ("massless", "negative", "right-angles", "triangle", "zero"),
     ),
+    ModelReader("mujoco", "MJCF", "mjcf.reader", frozenset({"free", "limits", "keyframe"})),
 )
 ELSEWHERE = {  # root elements of formats that are not read, and what to do
     "sdf": "SDF is not read: export the model as URDF",
@@ -55,7 +56,7 @@ ELSEWHERE = {  # root elements of formats that are not read, and what to do
     "OpenSimDocument": "OpenSim is not read",
     "mujocoinclude": "this is a part of a model: name the file that includes it",
 }
-WRITE = "a URDF begins with <robot name=...>"
+WRITE = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
 
 
 def reader_of(root: XmlElement, file: str) -> ModelReader:

@@ -17,7 +17,8 @@ MOST_ELEMENTS = 1_000_000  # 100,000 links and their joints
 DEEPEST = 5000  # levels: URDF has six, a chain of bodies in MJCF one each
 LONGEST_VALUE = 100_000  # characters of an attribute: the points of a mesh in MJCF
 OF_ENCODING = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCODING]})
-ENCODED = "encodings are UTF-8, UTF-16, ISO-8859-1, US-ASCII: save it as UTF-8"
+ENCODED = "encodings are UTF-8, and UTF-16, ISO-8859-1, US-ASCII where the first line says so: save it as UTF-8"
+POINTER = b"version https://git-lfs"
 BROKEN = "the file is cut off, or was edited by hand near this place"
 DOCTYPE = "delete the DOCTYPE and write out what its entities stand for"
 
@@ -42,6 +43,14 @@ def read_elements(content: bytes, file: str) -> XmlElement:
     return _Reading(file).root_of(content)
 
 
+def _is_utf8(content: bytes) -> bool:
+    try:
+        content.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
+
+
 class _Reading:
     """One text on its way."""
 
@@ -63,7 +72,9 @@ class _Reading:
             self.parser.Parse(content, True)
         except expat.ExpatError as error:
             what = expat.errors.messages.get(error.code, "not well-formed")
-            hint = ENCODED if error.code in OF_ENCODING else BROKEN
+            hint = ENCODED if error.code in OF_ENCODING or not _is_utf8(content) else BROKEN
+            if content.startswith(POINTER):
+                hint = "it is a pointer of Git LFS: git lfs pull fetches the file"
             raise self.refused("not-xml", f"not XML: {what}", hint, at=(error.lineno, error.offset + 1)) from None
         except (LookupError, UnicodeError, ValueError) as error:
             if isinstance(error, SpecError):

@@ -1,12 +1,13 @@
 """The tree that carries the motion: which joints are kept, which are cut, and in which order bodies come.
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
-limited by a stop is never cut; next comes what leaves nothing free, so that bodies welded together hang on each other
-and only circles of welds are cut. Joints that leave a thin body free to turn about the axis without inertia are cut
-first, for there would be nothing behind that freedom; among the others of one layer those that make most conditions are
-kept.
-`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on six
-freedoms of its own.
+limited by a stop is never cut. Next come the joints of a body without a mass to speak of, which only passes on what
+they carry: cut off from what is behind it, roundings would throw it about. Then what leaves nothing free, so that
+bodies welded together hang on each other and only circles of welds are cut. Joints that leave a thin body free to
+turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
+one layer those that make most conditions are kept.
+`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on
+six freedoms of its own.
 """
 
 from __future__ import annotations
@@ -74,13 +75,14 @@ def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
 def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> dict[int, list[int]]:
     """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written."""
     joints = mechanism.joints
-    null = null_axes(mechanism)
+    null, light = null_axes(mechanism), weightless(mechanism)
 
-    def urgency(k: int) -> tuple[bool, bool, bool, int, int, int]:
+    def urgency(k: int) -> tuple[bool, bool, bool, bool, int, int, int]:
         joint = joints[k]
+        passes_on = not light.isdisjoint((joint.a, joint.b))
         spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
         layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
-        return k not in kept, not kind.is_rigid, spins, layer, -kind.rows, k
+        return k not in kept, not passes_on, not kind.is_rigid, spins, layer, -kind.rows, k
 
     group = list(range(len(mechanism.bodies) + 1))
 
@@ -114,6 +116,12 @@ def null_axes(mechanism: Mechanism) -> dict[int, Array]:
     moments, axes = np.linalg.eigh(np.array([body.inertia for body in mechanism.bodies]))
     none = moments <= tolerances.NO_INERTIA * np.maximum(moments[:, 2:], 0.0)
     return {int(i): axes[i][:, none[i]].T for i in np.flatnonzero(none.any(axis=1))}
+
+
+def weightless(mechanism: Mechanism) -> frozenset[int]:
+    """The bodies that are no mass beside the heaviest: those between the joints of an imported stack."""
+    heaviest = max((body.mass for body in mechanism.bodies), default=0.0)
+    return frozenset(k for k, body in enumerate(mechanism.bodies) if body.mass < tolerances.NO_MASS * heaviest)
 
 
 def _leaves(joint: Joint, to: bool, null: Array) -> bool:

@@ -47,6 +47,24 @@ def test_what_the_spec_asks_for_is_not_a_slip() -> None:
     assert "moved" not in study(four_bar(pin=", initial: {angle: 20 deg}")).results.model
 
 
+def test_joints_between_origins_say_nothing_of_how_a_scene_is_drawn() -> None:
+    """A robot, many parts of which are fixed where their bodies have their origins, drawn about these."""
+    parts = "".join(f"  part{k}: {{mass: 1, center: [0.1, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(3))
+    origins = [f"{{body: {body}, at: [0, 0, 0]}}" for body in ("arm", "part0", "part1", "part2")]
+    welds = "".join(f"  fixed{k}: {{type: weld, from: {origins[0]}, to: {to}}}\n" for k, to in enumerate(origins[1:]))
+    text = f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 1]}}}}
+bodies:
+  arm: {{mass: 1, center: [0.5, 0, 0], inertia: [1, 1, 1], points: {{e: [1, 0, 0]}}}}
+  hand: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
+{parts}joints:
+  turn: {{type: pin, from: ground.O, to: {origins[0]}, axis: [0, 0, 1]}}
+  wrist: {{type: pin, from: arm.e, to: hand.o, axis: [0, 0, 1]}}
+{welds}"""
+    assert "moved" not in study(text).results.model
+
+
 def test_bodies_drawn_about_their_own_origins_are_placed() -> None:
     text = """
 heun: 1

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
+from heuncli.conversion.spec_text import spec_text
 from heuncli.errors import SpecError
-from tests.shared.imported import imported
+from tests.shared.imported import described, imported
 
 FINE = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
 BODY = f'<inertial><mass value="1"/>{FINE}</inertial>'
@@ -66,6 +67,22 @@ REFUSED = {  # the lines, and of each problem its line, code, and words of messa
     "quaternion": (
         [*TWO, joint("j", "a", "b", '<origin quat_xyzw="0 0 0 1"/>')], [(4, "import-attribute", "quat_xyzw")],
     ),
+    "unknown part of a joint": (
+        [*TWO, joint("j", "a", "b", '<axes xyz="0 1 0"/>')], [(4, "import-part", "mean axis?")],
+    ),
+    "unknown part of an inertial": (
+        [link("a", f'<inertial><mass value="1"/><pose/>{FINE}</inertial>')], [(2, "import-part", "<pose>")],
+    ),
+    "misspelt part of a link": (
+        [link("a"), link("b", BODY.replace("inertial", "inertail")), joint("j", "a", "b", kind="fixed")],
+        [(3, "import-part", "did you mean inertial?")],
+    ),
+    "misspelt part": ([*TWO, joint("j", "a", "b").replace("joint", "jiont")], [(4, "import-part", "mean joint?")]),
+    "axis without a direction": ([*TWO, joint("j", "a", "b", "<axis/>")], [(4, "import-missing", "xyz")]),
+    "misspelt limit": (
+        [*TWO, joint("j", "a", "b", '<limit lower="0" uppr="1"/>')], [(4, "import-attribute", "upper?")],
+    ),
+    "misspelt damping": ([*TWO, joint("j", "a", "b", '<dynamics dampng="1"/>')], [(4, "import-attribute", "damping?")]),
     "origin twice": ([*TWO, joint("j", "a", "b", "<origin/><origin/>")], [(4, "import-twice", "2 times")]),
     "no numbers": (
         [link("a", inertia("heavy", 1, 1, 1)), link("b", inertia("nan", 1, 1, 1)), joint("j", "a", "b")],
@@ -169,3 +186,31 @@ def test_what_does_not_go_with_the_options_is_told(name):
     with pytest.raises(SpecError) as refused:
         imported(robot(*lines), **asked)
     assert [problem.code for problem in refused.value.problems] == [code]
+
+
+def test_what_other_programs_say_is_left_out_and_listed():
+    """Parts and attributes that no number hangs on; what a fixed joint is to follow. What cancelled out is 0."""
+    inner = '<origin xyz="5.8e-66 0 1"/><dynamics D="1" mu_coulomb="0"/><limit gear_velocity="2" effort="1"/>'
+    lines = [
+        link("a", f"{BODY}<contact/><collision_checking/>"), link("b"), link("c"),
+        joint("j", "a", "b", inner),
+        joint("k", "b", "c", MIMIC.format("j"), kind="fixed"),
+    ]  # fmt: skip
+    machine = described(robot(*lines))
+    assert [(problem.location.line, problem.code) for problem in machine.left_out] == [(6, "import-left-out")]
+    text = spec_text(machine, "r.yaml")
+    assert "1 contact in links, 1 collision_checking in links" in text
+    assert "j: [0, 0, 1]" in text
+
+
+def test_moments_of_no_mass_are_left_out_where_that_is_asked_for():
+    """A frame stays one; what a joint moves gets a mass."""
+    lines = [
+        link("a"), link("b", inertia("0", 1, 1, 1)), link("c", inertia("0", 1, 1, 1)),
+        joint("j", "a", "b", kind="fixed"), joint("k", "b", "c"),
+    ]  # fmt: skip
+    text = imported(robot(*lines), repair=frozenset({"massless"}))
+    for name in ("b", "c"):
+        assert f'Repaired (massless): the link "{name}" has the mass 0; its inertia is left out.' in text
+    assert "mass: 1e-06 # repaired (massless): the link has the mass 0 in the file" in text
+    assert "  b:" not in text

@@ -193,6 +193,14 @@ def test_damping_is_a_damper_and_friction_is_told_to_be_left_out():
     assert "damping_j: {type: damper, joint: j, coefficient: 0.5}" in imported(parts)
 
 
+def test_damping_of_what_shifts_and_turns_is_told_to_be_left_out():
+    rubs = '<dynamics damping="0.5"/>'
+    for kind in ("planar", "floating"):
+        machine = described(robot(link("a"), link("b"), joint("j", "a", "b", kind, rubs)))
+        assert [problem.code for problem in machine.left_out] == ["import-left-out"]
+    assert not described(robot(link("a"), link("b"), joint("j", "a", "b", "fixed", rubs))).left_out
+
+
 def test_digits_stay_those_of_the_file_where_axes_turn_by_right_angles():
     """Seventeen digits, tiny numbers, and a turn that a double of pi/2 stands for."""
     numbers = (0.12345678901234566, 1e-7, -2.5e-05)

@@ -26,6 +26,7 @@ from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 BASES = ("fixed", "free")
 OF_OPTIONS = {  # fields of ImportAsked, by the options that ask for them
     "free": "--free", "base_free": "--base", "limits": "--limits", "density": "--density", "repair": "--repair",
+    "keyframe": "--keyframe",
 }  # fmt: skip
 FAILED = 1
 
@@ -81,7 +82,7 @@ def _name_of(target: str | None, file: str) -> str:
 def _validated(text: str, name: str) -> list[str]:
     """The warnings of the spec that was made. Raises SpecError where its numbers are beyond what is computed with."""
     try:
-        return [f"{problem.message} [{problem.code}]" for problem in load(name, text=text).warnings]
+        return [*map(str, load(name, text=text).warnings)]
     except SpecError as error:
         if all(problem.code == "magnitude" for problem in error.problems):
             raise SpecError(*(problem._replace(location=None) for problem in error.problems)) from None
@@ -98,7 +99,9 @@ def _asked(request: ImportRequest) -> ImportAsked:
         raise UsageError(Problem("bad-option", message, hint="with --free; the limits stand in comments either way"))
     words = [word.strip() for word in request.repair.split(",")] if request.repair is not None else []
     density = _density(request.density) if request.density is not None else None
-    return ImportAsked(request.free, request.base == "free", request.limits, density, frozenset(words))
+    return ImportAsked(
+        request.free, request.base == "free", request.limits, density, frozenset(words), request.keyframe
+    )
 
 
 def _density(text: str) -> float:

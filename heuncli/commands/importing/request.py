@@ -7,7 +7,7 @@ from heuncli.named_tuples import NamedTuple
 
 
 class ImportRequest(NamedTuple):
-    """Make a spec of another program's model: of a robot in URDF."""
+    """Make a spec of another program's model: of a robot in URDF, a scene of MuJoCo's."""
 
     file: Annotated[str, Option((), "The model; - reads standard input.", "FILE")]
     output: Annotated[str | None, OUTPUT] = None
@@ -23,6 +23,7 @@ class ImportRequest(NamedTuple):
     repair: Annotated[
         str | None, Option(("--repair",), "Faults that are repaired, each named in a comment.", "FAULT,...")
     ] = None
+    keyframe: Annotated[str | None, Option(("--keyframe",), "Of MJCF: the pose of the start.", "NAME")] = None
     strict: Annotated[bool, Option(("--strict",), "Fail where something has no counterpart.")] = False
     time_limit: Annotated[float | None, TIME_LIMIT] = None
     quiet: Annotated[bool, QUIET] = False

@@ -76,7 +76,7 @@ def main(request: RunRequest) -> int:
 
 
 def _counted(request: RunRequest) -> CollectiveTask | None:
-    """The collectives that are asked for."""
+    """The collectives that are asked for. Raises UsageError."""
     if all(getattr(request, name) is None for name in ("collective", "slope", "cycles", "bins", "repeat")):
         return None
     from heuncli.commands.run import collective  # with what counts

@@ -92,16 +92,16 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: 
     return _headed(request, form, study, tables)
 
 
+def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
+    """Collectives as text."""
+    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
+
+
 def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
     """Tables below what was solved, and how well."""
     if form == "markdown":
         return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
     return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
-
-
-def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
-    """Collectives as text."""
-    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
-from heuncli.conversion.urdf.fields import XACRO, UrdfFields
+from heuncli.conversion.urdf.fields import XACRO, UrdfFields, alike
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.errors import SpecError
 from heuncli.named_tuples import NamedTuple
@@ -19,6 +19,9 @@ X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 # of a robot, a link, a joint: what says nothing of its mechanics
 SILENT = frozenset({"material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller"})
+LINK_PARTS = ("inertial", "visual", "collision")
+INERTIAL_PARTS = ("origin", "mass", "inertia")
+JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")
 OTHER_KINDS = "known: " + ", ".join(KINDS) + "; a ball joint is three revolute ones with links between"
 
 
@@ -117,7 +120,7 @@ def robot_of(root: XmlElement, fields: UrdfFields) -> Robot:
     silent: Counter[str] = Counter()
     for element in root.inner:
         if element.tag == "link":
-            link = _link(element, fields)
+            link = _link(element, fields, silent)
             if link is not None and _is_new(link, links, fields):
                 links[link.name] = link
         elif element.tag == "joint":
@@ -130,7 +133,7 @@ def robot_of(root: XmlElement, fields: UrdfFields) -> Robot:
             message = f"<{element.tag}> is no part of a robot that is read"
             hint = did_you_mean(element.tag, ("link", "joint", *sorted(SILENT)), "parts")
             fields.report("import-part", element, f"robot {root.attributes.get('name', '')}".strip(), message, hint)
-    whole = len(links) == len(root.all("link")) and len(joints) == len(root.all("joint"))
+    whole = len(links) + len(joints) + sum(silent[tag] for tag in SILENT) == len(root.inner)
     return Robot(root, root.attributes.get("name", "").strip() or "robot", links, joints, dict(silent), whole)
 
 
@@ -153,16 +156,24 @@ def _is_new(found: UrdfLink | UrdfJoint, known: dict[str, UrdfLink] | dict[str, 
     return first is None
 
 
-def _link(element: XmlElement, fields: UrdfFields) -> UrdfLink | None:
+def _link(element: XmlElement, fields: UrdfFields, silent: Counter[str]) -> UrdfLink | None:
     name = fields.word(element, "name", "link")
     if name is None:
         return None
+    others = [part.tag for part in element.inner if part.tag not in LINK_PARTS]
+    meant = dict(alike(dict.fromkeys([part.tag for part in element.inner]), LINK_PARTS))
+    for part in element.inner:
+        if part.tag in meant:
+            message = f"<link> has a part <{part.tag}>, which is not read"
+            fields.report("import-part", part, f"link {name}", message, f"did you mean {meant[part.tag]}?")
+    silent.update(f"{tag} in links" for tag in others if tag not in meant)
     inertial = fields.one(element, "inertial", f"link {name}")
     return UrdfLink(name, element, None if inertial is None else _inertial(inertial, f"link {name}", fields))
 
 
 def _inertial(element: XmlElement, path: str, fields: UrdfFields) -> Inertial | None:
     """None where something of it is wrong, which is then a problem."""
+    fields.known_parts(element, path, *INERTIAL_PARTS)
     parts = {tag: fields.one(element, tag, path) for tag in ("mass", "inertia")}
     for tag, part in parts.items():
         if part is None:
@@ -193,6 +204,7 @@ def pose_of(element: XmlElement, path: str, fields: UrdfFields) -> LinkPose | No
 def _joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
     name = fields.word(element, "name", "joint")
     path = f"joint {name}" if name is not None else "joint"
+    fields.known_parts(element, path, *JOINT_PARTS, *SILENT)
     kind = fields.word(element, "type", path)
     if kind is not None and kind not in KINDS:
         fields.report("import-joint", element, path, f"'{kind}' is not a type of joint in URDF", OTHER_KINDS)
@@ -202,10 +214,11 @@ def _joint(element: XmlElement, fields: UrdfFields) -> UrdfJoint | None:
     axis_part = fields.one(element, "axis", path)
     if axis_part is not None:
         fields.known(axis_part, path, "xyz")
+        fields.word(axis_part, "xyz", path)
     axis = fields.vector(axis_part, "xyz", path, X_AXIS)
     if axis == ZERO and kind not in (None, "fixed", "floating"):
         fields.report("import-joint", axis_part or element, path, "the axis is 0 0 0", "it needs a direction: 0 0 1")
-    mimic = _mimic(element, path, fields)
+    mimic = _mimic(element, path, fields, kind)
     limits, effort = _limits(element, path, fields)
     damping, friction = _dynamics(element, path, fields)
     parent, child = ends
@@ -222,9 +235,13 @@ def _end(element: XmlElement, tag: str, path: str, fields: UrdfFields) -> str | 
     return fields.word(part, "link", path)
 
 
-def _mimic(element: XmlElement, path: str, fields: UrdfFields) -> Mimic | None:
+def _mimic(element: XmlElement, path: str, fields: UrdfFields, kind: str | None) -> Mimic | None:
     part = fields.one(element, "mimic", path)
     if part is None:
+        return None
+    if kind == "fixed":
+        message = "it is fixed, and what it is to follow is left out"
+        fields.left_out.append(fields.problem("import-left-out", part, path, message, "delete the <mimic>"))
         return None
     fields.known(part, path, "joint", "multiplier", "offset")
     joint = fields.word(part, "joint", path)
@@ -238,6 +255,7 @@ def _limits(element: XmlElement, path: str, fields: UrdfFields) -> tuple[tuple[f
     part = fields.one(element, "limit", path)
     if part is None:
         return None, None
+    fields.misspelt(part, path, "lower", "upper", "effort", "velocity")
     effort = fields.number(part, "effort", path) if "effort" in part.attributes else None
     if "lower" not in part.attributes and "upper" not in part.attributes:
         return None, effort
@@ -249,6 +267,7 @@ def _dynamics(element: XmlElement, path: str, fields: UrdfFields) -> tuple[float
     part = fields.one(element, "dynamics", path)
     if part is None:
         return 0.0, 0.0
+    fields.misspelt(part, path, "damping", "friction")
     damping, friction = (fields.number(part, name, path, 0.0) for name in ("damping", "friction"))
     for name, value in (("damping", damping), ("friction", friction)):
         if value is not None and value < 0.0:

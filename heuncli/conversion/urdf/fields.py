@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 
 from heuncli.conversion.attitudes import RIGHT
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.errors import Problem, SourceLocation
+from heuncli.nearest import did_you_mean
 from heuncli.number_range import is_in_range, out_of_range
 from heuncli.spec.models import Vec
 
@@ -16,6 +17,8 @@ NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\Z", re.IGNORECASE)
 COUNTS = {1: "a number", 3: "three numbers"}
 XACRO = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
+ALIKE = 0.8  # share of letters: uppr is meant as upper, gear_velocity not as velocity
+CANCELLED = 1e-20  # [m, rad] less is what CAD programs leave of what cancels out; a mass times its square is no number
 NEARLY_RIGHT = 1e-3  # [rad] 1.57 is nearer to a right angle, and what is meant to be another is farther
 
 
@@ -26,7 +29,9 @@ class UrdfFields:
         """to_right: angles that are nearly right ones are taken for right ones."""
         self.file, self.to_right = file, to_right
         self.problems: list[Problem] = []
+        self.left_out: list[Problem] = []  # what has no counterpart
         self.nearly_right: dict[str, None] = {}  # whose angles are
+        self.emptied: dict[str, None] = {}  # links of no mass whose inertia is left out
 
     def angles(self, rpy: Vec, path: str) -> Vec:
         """Angles [rad]; those that are nearly right ones are noted, and taken for right ones if that was asked for."""
@@ -64,6 +69,19 @@ class UrdfFields:
                 hint = f"read are: {', '.join(names)}"
                 self.report("import-attribute", element, path, message, hint)
 
+    def known_parts(self, element: XmlElement, path: str, *tags: str) -> None:
+        """Report elements in it that are not read: each would say something of it."""
+        for part in element.inner:
+            if part.tag not in tags and ":" not in part.tag:  # with a prefix it is of another program
+                message = f"<{element.tag}> has a part <{part.tag}>, which is not read"
+                self.report("import-part", part, path, message, did_you_mean(part.tag, tags, "parts"))
+
+    def misspelt(self, element: XmlElement, path: str, *names: str) -> None:
+        """Report attributes that are like one that is read, and not there: others are of other programs."""
+        for name, meant in alike(element.attributes, names):
+            message = f"<{element.tag}> has the attribute {name}, which is not read"
+            self.report("import-attribute", element, path, message, f"did you mean {meant}?")
+
     def word(self, element: XmlElement, name: str, path: str) -> str | None:
         """The text of an attribute that must be there and hold something."""
         text = element.attributes.get(name)
@@ -80,16 +98,22 @@ class UrdfFields:
         return None if found is None else found[0]
 
     def vector(self, element: XmlElement | None, name: str, path: str, default: Vec) -> Vec | None:
-        """The three numbers of an attribute; None where they are wrong."""
+        """The three numbers of an attribute; None where they are wrong. What is less than CANCELLED is 0."""
         if element is None:
             return default
-        found = self.numbers(element, name, path, 3, default)
+        found = self.numbers(element, name, path, 3, default, self._length)
         return None if found is None else (found[0], found[1], found[2])
 
     def numbers(
-        self, element: XmlElement, name: str, path: str, count: int, default: Sequence[float] | None
+        self,
+        element: XmlElement,
+        name: str,
+        path: str,
+        count: int,
+        default: Sequence[float] | None,
+        value: Callable[[XmlElement, str, str, str], float | None] | None = None,
     ) -> list[float] | None:
-        """The numbers of an attribute; None where they are wrong, or missing without a default."""
+        """The numbers of an attribute, each by `value`; None where they are wrong, or missing without a default."""
         text = element.attributes.get(name)
         if text is None:
             if default is not None:
@@ -101,7 +125,7 @@ class UrdfFields:
             message = f'{name}="{text}" of <{element.tag}>: expected {COUNTS[count]}, found {len(words)}'
             self.report("import-number", element, path, message, hint_for(text))
             return None
-        values = [self.value(element, name, path, word) for word in words]
+        values = [(value or self.value)(element, name, path, word) for word in words]
         return None if None in values else [value for value in values if value is not None]
 
     def value(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
@@ -118,6 +142,24 @@ class UrdfFields:
             self.report("import-number", element, path, message, found.hint)
             return None
         return value
+
+    def _length(self, element: XmlElement, name: str, path: str, word: str) -> float | None:
+        """A length, an angle or part of a direction."""
+        tiny = NUMBER.match(word) is not None and abs(float(word)) < CANCELLED
+        return 0.0 if tiny else self.value(element, name, path, word)
+
+
+def alike(given: Collection[str], known: Collection[str]) -> Iterator[tuple[str, str]]:
+    """What is given and not known, with the known name that it is like, if that is not given, too."""
+    others = [name for name in given if name not in known]
+    if not others:
+        return
+    from difflib import get_close_matches  # which few files need
+
+    for name in others:
+        for meant in get_close_matches(name, known, 1, ALIKE):
+            if meant not in given:
+                yield name, meant
 
 
 def hint_for(text: str) -> str:

@@ -17,7 +17,7 @@ from heuncli.conversion.urdf.links import Linked, links_of
 from heuncli.conversion.urdf.masses import LinkMass
 from heuncli.conversion.urdf.points import RobotPoints
 from heuncli.conversion.urdf.tree import LinkTree
-from heuncli.errors import SpecError
+from heuncli.errors import Problem, SpecError
 from heuncli.nearest import listed
 from heuncli.records import record
 from heuncli.spec.models import Vec
@@ -57,17 +57,17 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         gravity=GRAVITY,
         bodies=tuple(_body(judged, name, bodies[name], points, starts.get(name, {})) for name in carriers),
         ground=points.of(GROUND),
-        parameters=coordinates.parameters,
+        parameters=tuple(coordinates.parameters),
         joints=tuple(
             _joint(one, name, points, coordinates.initial.get(name, {}))
             for one, name in zip(linked, names, strict=True)
         ),
-        drives=coordinates.drives,
-        forces=coordinates.dampers,
-        stops=coordinates.stops,
+        drives=tuple(coordinates.drives),
+        forces=tuple(coordinates.dampers),
+        stops=tuple(coordinates.stops),
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
-        left_out=tuple(coordinates.left_out),
+        left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),
     )
 
 
@@ -104,6 +104,15 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
     return found
 
 
+def _undamped(judged: JudgedRobot, fields: UrdfFields) -> Iterator[Problem]:
+    """Damping and friction in joints that have no one coordinate to resist."""
+    for joint in judged.tree.above.values():
+        if joint.movable and not joint.single and (joint.damping or joint.friction):
+            message = f"the damping and friction of a joint of type {joint.kind} are not taken over"
+            hint = "a force of type damper resists in a plane, a couple in time what floats"
+            yield fields.problem("import-left-out", joint.element, joint.path, message, hint)
+
+
 def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     """What holds for the whole of it."""
     root = judged.tree.root.name
@@ -119,6 +128,8 @@ def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     if fields.nearly_right:
         what = "taken for right angles (--repair right-angles)" if fields.to_right else "kept as they are"
         yield f"Angles like 1.5708, nearly right ones, are {what}: {listed(fields.nearly_right)}."
+    for link in fields.emptied:
+        yield f'Repaired (massless): the link "{link}" has the mass 0; its inertia is left out.'
     if judged.robot.silent:
         counts = ", ".join(f"{count} {tag}" for tag, count in judged.robot.silent.items())
         yield f"Not taken over, as it says nothing of the mechanics: {counts}."

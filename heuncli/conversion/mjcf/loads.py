@@ -1,0 +1,105 @@
+"""Springs, dampers and the like of MuJoCo's that a spec has, too; its stops.
+
+hinge      -k (q - springref) - d q'    a turn_spring, a damper
+slide      the same along its axis      a torque (thrust) by its travel, a damper
+ball       -d sigma, relative           a damper
+tendon     straight, k (length - lengthspring), d of its rate: a spring
+gravcomp   -gravcomp m g at the centre of mass: a force
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+from heuncli.conversion.described import DescribedEntry
+from heuncli.conversion.mjcf.closings import Closer, straight
+from heuncli.conversion.mjcf.compiled import Compiled
+from heuncli.conversion.mjcf.frames import Frames, vec
+from heuncli.conversion.mjcf.laws import zero
+from heuncli.conversion.mjcf.points import Points
+from heuncli.conversion.mjcf.tree import COORDINATE, Step, Tree
+from heuncli.conversion.spec_text import number_text
+
+Name = Callable[[str], str]
+
+
+def joint_loads(c: Compiled, tree: Tree, name: Name) -> Iterator[DescribedEntry]:
+    """Springs and dampers in the joints of the tree."""
+    springs, dampers = not c.switched_off("PASSIVE", "SPRING"), not c.switched_off("PASSIVE", "DAMPER")
+    for step in tree.steps:
+        if step.joint is None:
+            continue
+        stiffness = float(c.model.jnt_stiffness[step.joint]) if springs else 0.0
+        damping = float(c.model.dof_damping[c.model.jnt_dofadr[step.joint]]) if dampers else 0.0
+        if stiffness and step.kind in COORDINATE:
+            reference = float(c.model.qpos_spring[c.model.jnt_qposadr[step.joint]])
+            yield _spring(step, stiffness, reference - zero(c, step.joint), name)
+        if damping and step.kind in {*COORDINATE, "ball"}:
+            keys = {"type": "damper", "joint": step.name, "coefficient": damping}
+            yield DescribedEntry(name(f"damping_{step.name}"), keys)
+
+
+def _spring(step: Step, stiffness: float, free: float, name: Name) -> DescribedEntry:
+    if step.kind == "pin":
+        keys = {"type": "turn_spring", "joint": step.name, "stiffness": stiffness, **({"angle": free} if free else {})}
+        return DescribedEntry(name(f"spring_{step.name}"), keys)
+    way = f"{step.name}.travel"
+    if free:
+        way = f"({way} {'-' if free > 0.0 else '+'} {number_text(abs(free))})"
+    keys = {"type": "torque", "joint": step.name, "value": f"-{number_text(stiffness)}*{way}"}
+    return DescribedEntry(name(f"spring_{step.name}"), keys, "a spring along the slide")
+
+
+def is_tendon_spring(c: Compiled, tendon: int) -> bool:
+    """Whether a tendon is a spring, a damper, or both, between two sites."""
+    low, high = (float(length) for length in c.model.tendon_lengthspring[tendon])
+    acts = c.model.tendon_stiffness[tendon] or c.model.tendon_damping[tendon]
+    return bool(acts) and straight(c, tendon) is not None and low == high
+
+
+def tendon_springs(c: Compiled, closer: Closer, name: Name) -> Iterator[DescribedEntry]:
+    """Springs between two sites."""
+    springs, dampers = not c.switched_off("PASSIVE", "SPRING"), not c.switched_off("PASSIVE", "DAMPER")
+    for tendon in range(c.count("tendon")):
+        sites = straight(c, tendon)
+        if sites is None or not is_tendon_spring(c, tendon):
+            continue
+        wanted = name(c.name("tendon", tendon) or f"tendon_{tendon + 1}")
+        stiffness = float(c.model.tendon_stiffness[tendon]) if springs else 0.0
+        damping = float(c.model.tendon_damping[tendon]) if dampers else 0.0
+        if not (stiffness or damping):
+            continue
+        ends = [closer.point(closer.site(site), wanted) for site in sites]
+        keys: dict[str, Any] = {"type": "spring", "from": ends[0], "to": ends[1], "stiffness": stiffness}
+        keys["length"] = float(c.model.tendon_lengthspring[tendon][0])
+        if damping:
+            keys["damping"] = damping
+        yield DescribedEntry(wanted, keys, c.told("tendon", tendon))
+
+
+def weightless(
+    c: Compiled, frames: Frames, tree: Tree, points: Points, gravity: Any, name: Name
+) -> Iterator[DescribedEntry]:
+    """What carries the weight of bodies that MuJoCo takes it from."""
+    for body in range(1, int(c.model.nbody)):
+        share, mass = float(c.model.body_gravcomp[body]), float(c.model.body_mass[body])
+        if not (share and mass and frames.owners[body]) or not any(gravity):
+            continue
+        its = tree.names[frames.owners[body]]
+        center = points.add(its, "center", frames.place(body, c.model.body_ipos[body]))
+        vector = vec(-share * mass * g for g in gravity)
+        remark = f"gravcomp {number_text(share)} of {c.told('body', body)}"
+        yield DescribedEntry(name(f"gravcomp_{its}"), {"type": "force", "on": center, "vector": vector}, remark)
+
+
+def stops(c: Compiled, tree: Tree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:
+    """The limits of the joints that no drive moves: where the coordinate comes to one, a blow without rebound."""
+    if c.switched_off("LIMIT", "CONSTRAINT"):
+        return
+    for step in tree.steps:
+        if step.joint is None or step.joint in driven or not c.model.jnt_limited[step.joint]:
+            continue
+        if step.kind in COORDINATE:
+            low, high = (float(limit) - zero(c, step.joint) for limit in c.model.jnt_range[step.joint])
+            yield DescribedEntry(name(f"limits_{step.name}"), {"joint": step.name, COORDINATE[step.kind]: (low, high)})
