@@ -12,7 +12,7 @@ import re
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.conversion.mjcf.named_files import NamedFiles
+from heuncli.conversion.mjcf.named_files import ModelFiles
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.named_tuples import NamedTuple
 
@@ -66,7 +66,7 @@ class Compiled(NamedTuple):
         return bool(self.model.opt.disableflags & bits)
 
 
-def compiled(content: bytes, file: str, named: NamedFiles) -> Compiled:
+def compiled(content: bytes, file: str, named: ModelFiles) -> Compiled:
     """The model of a text. file: what messages call it. Raises SpecError: no mujoco, or what MuJoCo finds wrong."""
     mujoco = _package(file)
     warned: list[str] = []
