@@ -9,6 +9,7 @@ into the working folder.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
@@ -72,14 +73,18 @@ def compiled(content: bytes, file: str, named: ModelFiles) -> Compiled:
     warned: list[str] = []
     mujoco.set_mju_user_warning(lambda text: warned.append(str(text)))
     try:
-        spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
-        spec.modelfiledir = named.folder
-        model = spec.compile()
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
+            spec.modelfiledir = named.folder
+            model = spec.compile()
     except (MemoryError, SpecError):
         raise
     except Exception as error:  # ValueError mostly; of the bindings also their own kinds
         raise SpecError(_problem(str(error), file)) from None
-    return Compiled(mujoco, model, file, _lines(spec), tuple(warned))
+    warned += [str(warning.message) for warning in seen]
+    lines = {} if named.included else _lines(spec)  # of several files MuJoCo does not say which
+    return Compiled(mujoco, model, file, lines, tuple(dict.fromkeys(warned)))
 
 
 def _package(file: str) -> Any:

@@ -73,8 +73,9 @@ class _Making:
                 Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
             )
         argument = self.argument(coupling)
-        if argument is None:
-            why = f"{step.name} follows a joint that nothing holds"
+        if argument is None or coupling.slave in self.driven:
+            twice = "twice, by another equality, too"
+            why = f"{step.name} follows {'a joint that nothing holds' if argument is None else twice}"
             self.left_out.append(left_out(c, "equality", coupling.equality, why, HELD_HINT))
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
