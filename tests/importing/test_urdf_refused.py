@@ -201,3 +201,16 @@ def test_what_other_programs_say_is_left_out_and_listed():
     text = spec_text(machine, "r.yaml")
     assert "1 contact in links, 1 collision_checking in links" in text
     assert "j: [0, 0, 1]" in text
+
+
+def test_moments_of_no_mass_are_left_out_where_that_is_asked_for():
+    """A frame stays one; what a joint moves gets a mass."""
+    lines = [
+        link("a"), link("b", inertia("0", 1, 1, 1)), link("c", inertia("0", 1, 1, 1)),
+        joint("j", "a", "b", kind="fixed"), joint("k", "b", "c"),
+    ]  # fmt: skip
+    text = imported(robot(*lines), repair=frozenset({"massless"}))
+    for name in ("b", "c"):
+        assert f'Repaired (massless): the link "{name}" has the mass 0; its inertia is left out.' in text
+    assert "mass: 1e-06 # repaired (massless): the link has the mass 0 in the file" in text
+    assert "  b:" not in text

@@ -20,13 +20,15 @@ Pair = tuple[Array, Array]
 class Asked:
     """Coordinates and rates of the joints by the file's names; accelerations of those that are driven.
 
-    Nothing pushes the others. bases: of joints of several freedoms, coordinates and rates as Pinocchio has them.
+    The others are pushed by `efforts`, or by nothing. bases: of joints of several freedoms, coordinates and rates as
+    Pinocchio has them.
     """
 
     q: Mapping[str, float]
     v: Mapping[str, float]
     a: Mapping[str, float]
     bases: Mapping[str, Pair] = field(default_factory=dict)
+    efforts: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +91,7 @@ class Robot:
         rng = np.random.default_rng(seed)
         single: dict[str, list[float]] = {}
         bases: dict[str, Pair] = {}
-        for name, joint in zip(self.model.names, self.model.joints, strict=True):
+        for name, joint in self._joints():
             if joint.nv == 1:
                 single[name] = [float(s * rng.uniform(-1, 1)) for s in size]
             elif joint.nv > 1:
@@ -120,7 +122,7 @@ class Robot:
             model.names[number]: self._carried(data, number, efforts, wrenches[number], a)
             for number in range(1, model.njoints)
         }
-        one = {name for name, joint in zip(model.names, model.joints, strict=True) if joint.nv == 1}
+        one = {name for name, joint in self._joints() if joint.nv == 1}
         pin.computeCentroidalMomentum(model, data, q, v)
         center, momentum = np.array(pin.centerOfMass(model, data, q)), np.array(data.hg.linear)
         moved, stands = float(pin.computeTotalMass(model)), model.inertias[0]
@@ -133,9 +135,13 @@ class Robot:
             float(pin.computeKineticEnergy(model, data, q, v)), -self.gravity * mass * float(middle[2]),
         )  # fmt: skip
 
+    def _joints(self) -> list[tuple[str, Any]]:
+        """All but the first, which is none."""
+        return [*zip(self.model.names, self.model.joints, strict=True)][1:]
+
     def _place(self, asked: Asked, q: Array, v: Array) -> None:
         """Coordinates and rates as Pinocchio has them; of a continuous joint (cos, sin)."""
-        for name, joint in zip(self.model.names, self.model.joints, strict=True):
+        for name, joint in self._joints():
             of_q, of_v = slice(joint.idx_q, joint.idx_q + joint.nq), slice(joint.idx_v, joint.idx_v + joint.nv)
             if name in asked.bases:
                 q[of_q], v[of_v] = asked.bases[name]
@@ -149,7 +155,10 @@ class Robot:
 
         model = self.model
         if not asked.a:
-            return np.array(pin.aba(model, data, q, v, np.zeros(model.nv)))
+            pushed = np.zeros(model.nv)
+            for name, effort in asked.efforts.items():
+                pushed[model.joints[model.getJointId(name)].idx_v] = effort
+            return np.array(pin.aba(model, data, q, v, pushed))
         a, driven = np.zeros(model.nv), np.zeros(model.nv, dtype=bool)
         for name, value in asked.a.items():
             joint = model.joints[model.getJointId(name)]

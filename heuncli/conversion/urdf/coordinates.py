@@ -21,17 +21,18 @@ from heuncli.named_tuples import NamedTuple
 
 
 class JointQuantity(NamedTuple):
-    """The coordinate of a type of joint: its key, where it is 0, its unit, and the key of a friction in it."""
+    """The coordinate of a type of joint: key, 0 and another value, unit, and the key of a friction in it."""
 
     key: str
     zero: str
+    another: str
     unit: str
     friction: str
 
 
 QUANTITIES = {
-    "pin": JointQuantity("angle", "0 deg", "rad", "torque"),
-    "slide": JointQuantity("travel", "0 m", "m", "force"),
+    "pin": JointQuantity("angle", "0 deg", "30 deg", "rad", "torque"),
+    "slide": JointQuantity("travel", "0 m", "10 mm", "m", "force"),
 }
 MOST_PLAIN = 9  # whole numbers up to it are factors without a dimension (manual/format.md, "Parameters")
 
@@ -51,7 +52,10 @@ class RobotCoordinates:
         self.followed, self.asked, self.fields = followed, asked, fields
         self.namer = Namer("joint")
         self.namer.given.update(names)  # a stop shares its name with no joint
-        self.found: dict[str, list[Any]] = {"parameters": [], "drives": [], "dampers": [], "stops": []}
+        self.parameters: list[DescribedParameter] = []
+        self.drives: list[DescribedEntry] = []
+        self.dampers: list[DescribedEntry] = []
+        self.stops: list[DescribedEntry] = []
         self.initial: dict[str, dict[str, Any]] = {}
         self.left_out: list[Problem] = []
         pairs = [(one, one.joint, name) for one, name in zip(linked, names, strict=True)]
@@ -62,31 +66,15 @@ class RobotCoordinates:
             self._take(joint, name, QUANTITIES[one.type])
 
     @property
-    def parameters(self) -> tuple[DescribedParameter, ...]:
-        return tuple(self.found["parameters"])
-
-    @property
-    def drives(self) -> tuple[DescribedEntry, ...]:
-        return tuple(self.found["drives"])
-
-    @property
-    def dampers(self) -> tuple[DescribedEntry, ...]:
-        return tuple(self.found["dampers"])
-
-    @property
-    def stops(self) -> tuple[DescribedEntry, ...]:
-        return tuple(self.found["stops"])
-
-    @property
     def told(self) -> tuple[str, ...]:
         """How the joints are moved."""
-        first = next(iter(self.found["parameters"]), None)
-        if first is None:
+        if not self.parameters:
             return ()
-        value = first.value.replace("0 deg", "30 deg").replace("0 m", "0.1 m")
-        pose = f'--set {first.name}="{value}"'
+        first = self.parameters[0].name
+        joint = next(joint for _, joint, name in self.single if name == first)
+        pose = f'--set {first}="{QUANTITIES[self.types[joint.name]].another}"'
         if self.asked.free:
-            return (f"The joints are free, and start at rest where their parameters say: {pose}",)
+            return (f"The joints are free, and start at rest where their parameters say ({pose}).",)
         return (
             f"Drives hold the joints where their parameters say ({pose}); what they take is told as drive.",
             "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
@@ -99,14 +87,14 @@ class RobotCoordinates:
         else:
             value = self._start(joint, quantity)
             remark = "; ".join(filter(None, (called("joint", name, joint.name), self._limits(joint, quantity))))
-            self.found["parameters"].append(DescribedParameter(name, value, remark))
+            self.parameters.append(DescribedParameter(name, value, remark))
             if self.asked.free:
                 self.initial[name] = {quantity.key: name}
             else:
                 self._drive(name, quantity, name, "")
         if joint.damping:
             keys = {"type": "damper", "joint": name, "coefficient": joint.damping}
-            self.found["dampers"].append(DescribedEntry(self.namer.name(f"damping_{name}"), keys))
+            self.dampers.append(DescribedEntry(self.namer.name(f"damping_{name}"), keys))
         if joint.friction:
             self._leave_friction(joint, name, quantity)
         if self.asked.limits:
@@ -114,7 +102,7 @@ class RobotCoordinates:
 
     def _drive(self, name: str, quantity: JointQuantity, value: str, remark: str) -> None:
         keys = {"joint": name, quantity.key: value}
-        self.found["drives"].append(DescribedEntry(self.namer.name(f"hold_{name}"), keys, remark))
+        self.drives.append(DescribedEntry(self.namer.name(f"hold_{name}"), keys, remark))
 
     def _follow(self, joint: UrdfJoint, name: str, quantity: JointQuantity, follows: Followed) -> None:
         leader = self.names[follows.leader.name]
@@ -150,7 +138,7 @@ class RobotCoordinates:
             self.fields.report("import-limits", joint.element, joint.path, message, "leave --limits out, or mend them")
             return
         keys = {"joint": name, quantity.key: (lower, upper)}
-        self.found["stops"].append(DescribedEntry(self.namer.name(f"limits_{name}"), keys))
+        self.stops.append(DescribedEntry(self.namer.name(f"limits_{name}"), keys))
 
     def _leave_friction(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {number_text(joint.friction)}, speed: 0.01}}"

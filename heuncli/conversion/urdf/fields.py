@@ -31,6 +31,7 @@ class UrdfFields:
         self.problems: list[Problem] = []
         self.left_out: list[Problem] = []  # what has no counterpart
         self.nearly_right: dict[str, None] = {}  # whose angles are
+        self.emptied: dict[str, None] = {}  # links of no mass whose inertia is left out
 
     def angles(self, rpy: Vec, path: str) -> Vec:
         """Angles [rad]; those that are nearly right ones are noted, and taken for right ones if that was asked for."""

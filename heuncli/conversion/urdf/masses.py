@@ -7,7 +7,8 @@ What is left as it is may break this by what heun takes for rounding. A repair c
     negative    moments below 0 become 0
     triangle    A1 and A2 are raised, each by half of A3 - A1 - A2: of all raises the one with the least squares
     zero        a link with a mass and no moment at all is taken for a point mass
-    massless    a link without mass that moves gets a point mass of MASSLESS at its origin
+    massless    a link without mass that moves gets a point mass of MASSLESS at its origin; a mass of 0 loses its
+                inertia
 """
 
 from __future__ import annotations
@@ -39,9 +40,14 @@ def mass_of(link: UrdfLink, repair: frozenset[str], fields: UrdfFields) -> LinkM
     given = link.inertial
     if given is None or (given.mass == 0.0 and not any(given.moments)):
         return None  # without mass, and says so
+    if given.mass == 0.0 and "massless" in repair:
+        fields.emptied[link.name] = None
+        return None
     if given.mass <= 0.0:
         what = "the mass is 0, the inertia is not" if given.mass == 0.0 else f"the mass is {given.mass:g} kg"
         hint = "a link that moves has a mass above 0; a frame without mass has no <inertial>"
+        if given.mass == 0.0:
+            hint += "; --repair massless leaves the inertia out"
         fields.report("import-mass", given.element, link.path, what, hint)
         return None
     judged = _Judged(link, given, repair, fields)

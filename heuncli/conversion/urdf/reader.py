@@ -16,7 +16,6 @@ from heuncli.errors import SpecError
 from heuncli.spec.models import Matrix
 
 WORLD = "world"  # the name of a root that is the ground
-REPAIRS = ("massless", "negative", "right-angles", "triangle", "zero")
 MASSES_HINT = "give it an <inertial>; --density fills boxes, cylinders and spheres; --repair massless gives it 1 mg"
 
 

@@ -57,14 +57,14 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         gravity=GRAVITY,
         bodies=tuple(_body(judged, name, bodies[name], points, starts.get(name, {})) for name in carriers),
         ground=points.of(GROUND),
-        parameters=coordinates.parameters,
+        parameters=tuple(coordinates.parameters),
         joints=tuple(
             _joint(one, name, points, coordinates.initial.get(name, {}))
             for one, name in zip(linked, names, strict=True)
         ),
-        drives=coordinates.drives,
-        forces=coordinates.dampers,
-        stops=coordinates.stops,
+        drives=tuple(coordinates.drives),
+        forces=tuple(coordinates.dampers),
+        stops=tuple(coordinates.stops),
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
         left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),
@@ -128,6 +128,8 @@ def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:
     if fields.nearly_right:
         what = "taken for right angles (--repair right-angles)" if fields.to_right else "kept as they are"
         yield f"Angles like 1.5708, nearly right ones, are {what}: {listed(fields.nearly_right)}."
+    for link in fields.emptied:
+        yield f'Repaired (massless): the link "{link}" has the mass 0; its inertia is left out.'
     if judged.robot.silent:
         counts = ", ".join(f"{count} {tag}" for tag, count in judged.robot.silent.items())
         yield f"Not taken over, as it says nothing of the mechanics: {counts}."
