@@ -8,15 +8,9 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # that of `typing` takes 2 ms
 if TYPE_CHECKING:
-    from heuncli.door.asked_run import UnknownPath as UnknownPath
-    from heuncli.door.diagrams import Diagram as Diagram
-    from heuncli.door.measured import Number as Number
-    from heuncli.door.signals import Signal as Signal
-    from heuncli.door.solved import Solved as Solved
-    from heuncli.door.solving import solve as solve
-    from heuncli.door.solving import solve_cases as solve_cases
-    from heuncli.door.solving import validate as validate
-    from heuncli.door.warned import HeunWarning as HeunWarning
+    from heuncli.door import solve as solve
+    from heuncli.door import solve_cases as solve_cases
+    from heuncli.door import validate as validate
     from heuncli.errors import HeunError as HeunError
     from heuncli.errors import LimitError as LimitError
     from heuncli.errors import OutputError as OutputError
@@ -25,14 +19,21 @@ if TYPE_CHECKING:
     from heuncli.errors import SourceLocation as SourceLocation
     from heuncli.errors import SpecError as SpecError
     from heuncli.errors import UsageError as UsageError
+    from heuncli.in_python.asked_run import UnknownPath as UnknownPath
+    from heuncli.in_python.diagrams import Diagram as Diagram
+    from heuncli.in_python.measured import Number as Number
+    from heuncli.in_python.signals import Signal as Signal
+    from heuncli.in_python.solved import Solved as Solved
+    from heuncli.in_python.warned import HeunWarning as HeunWarning
     from heuncli.version import VERSION as __version__
 
 HOME = {  # each name, and the module that it is in
-    "solve": "door.solving", "solve_cases": "door.solving", "validate": "door.solving",
-    "Solved": "door.solved", "Signal": "door.signals", "Number": "door.measured", "Diagram": "door.diagrams",
+    "solve": "door", "solve_cases": "door", "validate": "door",
+    "Solved": "in_python.solved", "Signal": "in_python.signals", "Number": "in_python.measured",
+    "Diagram": "in_python.diagrams",
     "HeunError": "errors", "SpecError": "errors", "SolveError": "errors", "LimitError": "errors",
-    "OutputError": "errors", "UsageError": "errors", "UnknownPath": "door.asked_run",
-    "Problem": "errors", "SourceLocation": "errors", "HeunWarning": "door.warned",
+    "OutputError": "errors", "UsageError": "errors", "UnknownPath": "in_python.asked_run",
+    "Problem": "errors", "SourceLocation": "errors", "HeunWarning": "in_python.warned",
 }  # fmt: skip
 __all__ = [*HOME, "__version__"]
 

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import gc
 import io
 import os
 import sys
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -15,8 +17,10 @@ from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
-# And pictures, pages and reports, which are shown numbers.
-SPARED = {"browser", "closed_forms", "convergence", "honesty", "limits", "pictures", "reporting", "show"}
+# And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
+# touch no kernel.
+JUDGED, SHOWN = {"closed_forms", "convergence", "honesty", "limits"}, {"browser", "pictures", "reporting", "show"}
+SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_door"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
 SHARE = 4
@@ -58,6 +62,17 @@ def pytest_configure() -> None:
 
 def pytest_report_header() -> str:
     return f"heun: {KERNEL} kernel, {Path(FOLDER).parent}"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Nothing of what is collected becomes garbage: it is not searched for any, now or while the tests run."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any, Protocol
 
 from heuncli.cli.output import say
-from heuncli.door.warned import warnings_of
 from heuncli.errors import Problem, UsageError
 from heuncli.foreign_text import shown
 from heuncli.results import Array, Results
@@ -14,8 +13,10 @@ from heuncli.spec.models import Spec
 from heuncli.study.model.options import Options
 from heuncli.telling.asked_values import all_or_errors as all_or_errors  # for the commands, beside these here
 from heuncli.telling.asked_values import choice as choice
-from heuncli.telling.asked_values import positive, within_run
+from heuncli.telling.asked_values import positive as positive
 from heuncli.telling.asked_values import tolerance as tolerance
+from heuncli.telling.asked_values import within_run
+from heuncli.telling.warned import warnings_of
 
 
 class SolverRequest(Protocol):

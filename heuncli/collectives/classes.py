@@ -21,7 +21,7 @@ class Matrix(NamedTuple):
     counts: Array
 
 
-class Crossings(NamedTuple):
+class LevelCrossings(NamedTuple):
     """How often levels (n,) are passed upwards, and downwards."""
 
     levels: Array
@@ -61,7 +61,7 @@ def matrix(cycles: Cycles, ranges: Array, slack: float) -> Matrix:
     return Matrix(ranges, means, counts.reshape(n, n))
 
 
-def crossings(cycles: Cycles, levels: Array) -> Crossings:
+def crossings(cycles: Cycles, levels: Array) -> LevelCrossings:
     """How often the history passes levels (n,) that has these cycles.
 
     Each whole cycle passes those between its ends once upwards and once downwards, each half in its own direction: what
@@ -73,7 +73,7 @@ def crossings(cycles: Cycles, levels: Array) -> Crossings:
     rises = cycles.end > cycles.begin
     up = np.where(half, np.where(rises, 1.0, 0.0), cycles.counts)
     down = np.where(half, np.where(rises, 0.0, 1.0), cycles.counts)
-    return Crossings(
+    return LevelCrossings(
         levels,
         _above(low, up, levels, "right") - _above(high, up, levels, "right"),
         _above(low, down, levels, "left") - _above(high, down, levels, "left"),

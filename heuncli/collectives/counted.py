@@ -9,12 +9,13 @@ than it would grow by if each of them, also of those counted apart, were 2 e lar
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
 from heuncli.collectives import classes
-from heuncli.collectives.classes import Crossings, Matrix
+from heuncli.collectives.classes import LevelCrossings, Matrix
 from heuncli.collectives.equivalent import EquivalentRange, damage, equivalent_range
 from heuncli.collectives.rainflow import Cycles, endless, rainflow, repeated, turning_points
 from heuncli.named_tuples import NamedTuple
@@ -23,6 +24,8 @@ from heuncli.results import Array, Mask
 
 BINS, MOST_BINS = 10, 1000
 LEAST_SLOPE = 1.0  # below it the equivalent range is no norm, and no material is known
+MOST_SLOPE = 100.0  # R^m then is the largest range alone
+MOST_REPEATS = 10**12
 REFERENCE = 0.0  # the level of 5.1 from which on crossings count upwards
 
 
@@ -42,6 +45,22 @@ class LoadHistory(NamedTuple):
     of_vector: bool = False
 
 
+class UnfitCounting(NamedTuple):
+    """A way of counting that is none: the field of Counting, what is expected, such as what."""
+
+    name: str
+    expected: str
+    example: str
+
+
+SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
+CYCLES = UnfitCounting("cycles", "of how many cycles equivalent ranges are, a positive number", "1e6")
+CLASSES = UnfitCounting("bins", f"how many classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
+REPEATS = UnfitCounting(
+    "repeat", "how often the motion is run through, a whole number, or closed", "1000; or closed: for ever"
+)
+
+
 class Counting(NamedTuple):
     """How a history is counted: told so many times in a row, or (closed) for ever, of which one time is counted.
 
@@ -53,6 +72,16 @@ class Counting(NamedTuple):
     bins: int = BINS
     repeat: int = 1
     closed: bool = False
+
+    def unfit(self) -> Sequence[UnfitCounting]:
+        """What of it cannot be counted by."""
+        checks = (
+            (all(LEAST_SLOPE <= m <= MOST_SLOPE for m in self.slopes), SLOPES),
+            (self.cycles is None or (math.isfinite(self.cycles) and self.cycles > 0.0), CYCLES),
+            (1 <= self.bins <= MOST_BINS and self.bins == int(self.bins), CLASSES),
+            (1 <= self.repeat <= MOST_REPEATS and self.repeat == int(self.repeat), REPEATS),
+        )
+        return [unfit for fits, unfit in checks if not fits]
 
     @property
     def of_cycles(self) -> float:
@@ -79,7 +108,7 @@ class Collective:
     matrix: Matrix
     counts: Array
     shares: Array
-    crossings: Crossings
+    crossings: LevelCrossings
     equivalents: Sequence[EquivalentRange]
 
     @property

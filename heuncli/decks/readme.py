@@ -54,8 +54,9 @@ def readme(cases: LoadCases, nodes: DeckNodes, mark: str, tie: str, cards: Seque
 
 
 SPREAD = (
-    "A distributed load stands as the two forces at the ends of its line that are statically equal to it. Between the "
-    "ends a mesh bears more truly what it is, per length and linear: the comments of its case have it at both ends."
+    "A distributed load stands as forces at the ends of ten pieces of its line, statically equal piece by piece: "
+    "section loads are exact at these points. What it is per length there stands in the comments of its case; a mesh "
+    "may bear that instead."
 )
 
 
@@ -72,9 +73,14 @@ def _mesh(cases: LoadCases) -> list[str]:
     """What the mesh has to weigh, for the body's inertia is the mesh's."""
     _, length, mass, _ = cases.units
     body, I = cases.body, cases.body.inertia
-    return [
+    first = [
         "has to have, for its own mass makes the weight and the inertia:",
         f"mass {number(body.mass)} {mass}, center of mass {vector(body.center)} {length},",
+    ]
+    if body.planar:  # of a body in the plane a spec may tell no more
+        return [*first, f"about it Izz {number(float(I[2, 2]))} {mass} {length}2"]
+    return [
+        *first,
         f"about it Ixx Iyy Izz {vector(np.diag(I))} {mass} {length}2,",
         f"Ixy Iyz Izx {vector(-np.array([I[0, 1], I[1, 2], I[2, 0]]))} (products, the sum of m x y)",
     ]

@@ -1,7 +1,8 @@
 """What acts on one body at some instants, each action with its name, its point and who exerts it, in the body's axes.
 
-A distributed load, linear along a line from A to B, is statically equal to two forces at the ends: of the part that is
-q at A and nothing at B, q l/2 in all, two thirds act at A and one third at B, for its resultant stands l/3 from A.
+A distributed load, linear along a line, stands as forces at the ends of equal pieces of it. Each piece, q_0 at one end
+and q_1 at the other, is statically equal to h (2 q_0 + q_1)/6 and h (q_0 + 2 q_1)/6 there: so the section loads are
+exact at the ends of all pieces, and between them off by q h^2/8 at most.
 """
 
 from __future__ import annotations
@@ -17,10 +18,12 @@ from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.results import Array
+from heuncli.shapes.inertia import pseudo_inertia
 from heuncli.spec.models import Spec
 from heuncli.study.compose.recovery import Recovery
 
 ROUNDING = 1e-14  # of the largest component of its kind: what is less stands for nothing, and is written as 0
+PIECES = 10  # of the line of a distributed load
 OUTSIDE = "outside"
 CENTER = "center of mass"
 
@@ -51,7 +54,20 @@ def fields_of(recovery: Recovery, body: int) -> list[AccelerationField]:
     R = states.R[:, body]
     vectors = [states.a[:, body], np.broadcast_to(gravity, (len(R), 3)), states.omega[:, body], states.alpha[:, body]]
     a, g, w, u = in_body_axes(R, np.array(vectors))
-    return [AccelerationField(a[k], g[k], w[k], u[k]) for k in range(len(R))]
+    own = recovery.setup.scene.mechanism.bodies[body]
+    P = pseudo_inertia(own.mass, own.center, own.inertia)
+    r = float(np.sqrt(np.trace(P[:3, :3]) / own.mass))
+    return [_tidy_field(AccelerationField(a[k], g[k], w[k], u[k]), r) for k in range(len(R))]
+
+
+def _tidy_field(field: AccelerationField, r: float) -> AccelerationField:
+    """The field without what rounding makes of a body that does not turn, or not so; r: how far its masses lie."""
+    a, g, w, u = field.origin, field.gravity, field.angular_velocity, field.angular_acceleration
+    least = ROUNDING * max(float(np.abs(x).max()) for x in (a, g, r * u, r * w * w))
+    return AccelerationField(
+        _cut(a, least), _cut(g, least), _cut(w, ROUNDING * float(np.abs(w).max())),
+        np.where(r * np.abs(u) <= least, 0.0, u),
+    )  # fmt: skip
 
 
 def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
@@ -84,7 +100,7 @@ def _kind(action: Action, spec: Spec) -> str:
 
 
 def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> Iterator[PointAction]:
-    """What it does at an instant; of a distributed load at both ends of its line."""
+    """What it does at an instant; of a distributed load at the ends of the pieces of its line."""
     at, to = (None if x is None else (x[k] if x.ndim == 2 else x) for x in (own.on.at, own.on.to))
     assert at is not None
     force, moment = own.on.force[k], own.on.moment[k]
@@ -94,8 +110,28 @@ def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> It
         return
     run = to - at
     densest = force / (0.5 * float(np.sqrt(run @ run)))
-    for share, end, per_length in ((2.0 / 3.0, at, densest), (1.0 / 3.0, to, np.zeros(3))):
-        yield PointAction(*words, _point_at(end, named, center), end, share * force, moment, per_length)
+    for end, share, density in zip(_ends_of_pieces(at, to), *_falling(), strict=True):
+        yield PointAction(*words, _point_at(end, named, center), end, share * force, moment, density * densest)
+
+
+def _ends_of_pieces(at: Array, to: Array) -> list[Array]:
+    """Points from `at` to `to`, to the last bit those from `to` to `at`: loads from either end are summed up there."""
+    forth = at.tolist() <= to.tolist()
+    low, high = (at, to) if forth else (to, at)
+    points = [low, *(low + (i / PIECES) * (high - low) for i in range(1, PIECES)), high]
+    return points if forth else points[::-1]
+
+
+def _falling() -> tuple[Array, Array]:
+    """Of a force that falls evenly along its line to nothing: its shares at the ends of the pieces, and its density.
+
+    Of the density at the beginning, which is 2 F/l.
+    """
+    q = np.linspace(1.0, 0.0, PIECES + 1)
+    shares = np.zeros(PIECES + 1)
+    shares[:-1] += (2.0 * q[:-1] + q[1:]) / (3.0 * PIECES)
+    shares[1:] += (q[:-1] + 2.0 * q[1:]) / (3.0 * PIECES)
+    return shares, q
 
 
 def _point_at(at: Array, named: Mapping[str, Array], center: Array) -> str:
@@ -105,7 +141,7 @@ def _point_at(at: Array, named: Mapping[str, Array], center: Array) -> str:
 
 
 def _tidy(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
-    """The actions without those that do nothing; of a distributed load what acts at one end together."""
+    """The actions without those that do nothing; of a distributed load what acts at one place together."""
     together: dict[tuple[str, ...], PointAction] = {}
     for one in actions:
         key = (one.kind, one.name, one.by, *map(repr, one.at.tolist()))

@@ -73,7 +73,7 @@ def _parsed(word: str) -> AskedInstant | None:
 def _meant(word: str) -> str:
     """What may be meant by a word that asks for nothing."""
     kind, colon, what = word.partition(":")
-    if not colon and "." in word:
+    if not colon and "." in word and not word[0].isdigit():
         return f"did you mean peak:{word}?"
     known = (*EXTREMES, IMPULSE) if colon else ("first", "last")
     near = did_you_mean(kind, known, "words")

@@ -28,8 +28,8 @@ class PointAction:
     """A force and a moment ON the body at one of its points, body axes, (3,) each.
 
     kind: joint, drive, stop, or the type of the load in the spec; name: there; by: who exerts it, a body, the ground or
-    outside; point: the name of the point, as far as it has one. per_length: of a distributed load at this end of its
-    line, whose whole force the forces at both ends are; None of any other.
+    outside; point: the name of the point, as far as it has one. per_length: of a distributed load what it is there,
+    where the force is that of the pieces of its line beside the point; None of any other.
     """
 
     kind: str

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from heuncli.report.collective_schema import collectives_schema
 from heuncli.results_schema import BLOWS, NAMES, TREE, Node, Quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
@@ -15,23 +16,24 @@ FORMAT = {"const": 1, "description": "version of the form of results"}
 
 
 def results_schema() -> dict[str, Any]:
-    """The schema of a result, or of those of all load cases with their envelope."""
+    """The schema of a result, of load collectives, or of either of all load cases."""
     one = _block(TREE, timed=True)
     one["properties"]["heun"] = FORMAT
     one["properties"] |= {key: {} for key in ("spec", "version", "warnings") if key not in one["properties"]}
     one["required"] = ["heun", "status", "time"]
     bound = {"type": ["object", "null"], "properties": {"value": NUMBER, "at": NUMBER, "case": {"type": "string"}}}
     row = {"type": "object", "properties": {"unit": {"type": "string"}, "min": bound, "max": bound}}
+    either = [{"$ref": "#/definitions/result"}, {"$ref": "#/definitions/collectives"}]
     cases = {
         "type": "object", "required": ["cases"], "additionalProperties": False,
         "properties": {
-            "cases": {"type": "object", "additionalProperties": {"$ref": "#/definitions/result"}},
+            "cases": {"type": "object", "additionalProperties": {"anyOf": either}},
             "envelope": {"type": "object", "additionalProperties": row},
         },
     }  # fmt: skip
     return {
-        "$schema": DRAFT, "title": "A result of heun run", "definitions": {"result": one},
-        "anyOf": [{"$ref": "#/definitions/result"}, cases],
+        "$schema": DRAFT, "title": "A result of heun run",
+        "definitions": {"result": one, "collectives": collectives_schema(FORMAT)}, "anyOf": [*either, cases],
     }  # fmt: skip
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from heuncli.collectives.counted import Collective, Counting, LoadHistory, counted
-from heuncli.errors import Problem, SolveError
+from heuncli.collectives.counted import Collective, Counting, LoadHistory, UnfitCounting, counted
+from heuncli.errors import Problem, SolveError, UsageError
 from heuncli.study.ask.histories import CODE, histories
 from heuncli.study.ask.measure import MeasureRequest, Peak
 from heuncli.study.ask.study import Study
@@ -38,13 +38,21 @@ def collective(
 
 
 def collectives(study: Study, paths: Sequence[str], asked: Counting) -> list[Collective]:
-    """Those of several paths, searched together. Raises as collective() does."""
+    """Those of several paths, searched together. Raises as collective() does, and UsageError for no way to count."""
+    if unfit := asked.unfit():
+        raise UsageError(*(said(one, one.name, getattr(asked, one.name)) for one in unfit))
     whole = MeasureRequest("abs", "")
     errors = {path: error_of(whole._replace(path=path), NOWHERE, study) or 0.0 for path in paths}
     found = histories(study, errors, {path: unit_of(path, study.spec) for path in paths})
     if asked.closed or asked.repeat > 1:
         require_closed(found)
     return [counted(history, asked) for history in found]
+
+
+def said(unfit: UnfitCounting, option: str, value: object) -> Problem:
+    """What is wrong with an option."""
+    message = f"{option} {value}: expected {unfit.expected}"
+    return Problem("bad-option", message, hint=f"such as {option} {unfit.example}")
 
 
 def require_closed(several: Sequence[LoadHistory]) -> None:

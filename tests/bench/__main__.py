@@ -1,8 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, memory, sections, causes, reduced, balance, lagrange, pipeline, growth,
-variants, sweeps, pictures, reports, imports, pages; each line: what, error, time; memory: megabytes; growth: counts;
-pages: frames a second.
+Parts: motion, chart, chain, process, export, loads, memory, sections, causes, reduced, balance, lagrange, pipeline,
+door, growth, variants, sweeps, pictures, reports, imports, pages, collectives; each line: what, error, time; memory:
+megabytes; growth: counts; pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """
@@ -39,17 +39,20 @@ from tests.bench.auto import table
 from tests.bench.balance import balanced
 from tests.bench.causes import by_cause
 from tests.bench.chart import chart
+from tests.bench.collectives import collective_times
 from tests.bench.figures import figures
 from tests.bench.generated import chain
 from tests.bench.growth import growth
 from tests.bench.honesty import honesty
 from tests.bench.imports import imports
 from tests.bench.lagrange import equations
+from tests.bench.load_cases import load_cases
 from tests.bench.long import long
 from tests.bench.memory import memory
 from tests.bench.pages import pages
 from tests.bench.pictures import pictures
 from tests.bench.pipeline import pipeline
+from tests.bench.python_door import python_door
 from tests.bench.reduced import reduced
 from tests.bench.reports import reports
 from tests.bench.sweeps import sweeps
@@ -213,7 +216,8 @@ PARTS = {
     "sections": sections,
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
-    "pipeline": pipeline, "growth": growth, "variants": variants, "sweeps": sweeps,
+    "pipeline": pipeline, "door": python_door, "growth": growth, "variants": variants, "sweeps": sweeps,
+    "collectives": collective_times, "loads": load_cases,
     "pictures": pictures, "reports": lambda: reports(median_ms),
     "imports": lambda: imports(median_ms), "pages": pages,
 }  # fmt: skip

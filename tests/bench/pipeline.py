@@ -1,4 +1,4 @@
-"""What a pipeline waits for: a folder of a thousand specs, the schema; and how large a golden file is."""
+"""What a pipeline waits for: a folder of a thousand specs, published cases, the schema; how large a golden file is."""
 
 from __future__ import annotations
 
@@ -38,6 +38,8 @@ def pipeline() -> None:
         took("check", str(ROOT / "specs" / "double.yaml"), "--golden", name, "--update", "--force")
         size = (next(folder.rglob("double.json"))).stat().st_size
         print(f"golden file of double.yaml: {size / 1e3:.1f} kB")
+    for jobs in ("1", "2"):
+        print(f"heun check --references, {jobs} at once: {took('check', '--references', '--jobs', jobs):.2f} s")
     print(f"heun schema: {took('schema'):.2f} s; --results: {took('schema', '--results'):.2f} s")
 
 

@@ -95,6 +95,7 @@ def test_moments_about_a_point_by_name_or_numbers(heun: Heun, crank: str) -> Non
     assert by_name["residual"]["moment"] != found(heun, crank)["residual"]["moment"]
 
 
+@pytest.mark.heavy
 def test_a_counterweight_and_its_cost(heun: Heun, crank: str) -> None:
     told = found(heun, crank, "--counterweight", "crank.main:radius=60mm")
     [weight] = told["counterweights"]

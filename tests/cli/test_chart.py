@@ -35,6 +35,7 @@ def test_json_keeps_to_the_contract(heun: Heun) -> None:
     assert coarse["error"]["motion"] > 100.0 * fine["error"]["motion"] > 0.0 and fine["front"]
 
 
+@pytest.mark.heavy
 def test_csv_and_table_tell_the_same(heun: Heun) -> None:
     rows = list(csv.DictReader(io.StringIO(heun("chart", "swinging.yaml", *FEW, "--format", "csv").stdout)))
     assert [row["tolerance"] for row in rows] == ["0.0001", "1e-08"]

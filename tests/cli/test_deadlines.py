@@ -173,6 +173,7 @@ def test_a_huge_limit_and_another_thread(heun: Heun) -> None:
     assert codes == [0, 0]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["double", "four_bar"])
 @pytest.mark.parametrize("hold_rows", [False, True])
 def test_states_are_recovered_alike_in_short_calls(monkeypatch: pytest.MonkeyPatch, name: str, hold_rows: bool) -> None:

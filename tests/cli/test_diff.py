@@ -35,6 +35,7 @@ def test_the_largest_relative_change_comes_first(heun: Heun, pair: tuple[str, st
     assert heun("diff", *pair).returncode == 0
 
 
+@pytest.mark.heavy
 def test_a_spec_against_its_golden_file_and_two_of_these(heun: Heun, pair: tuple[str, str]) -> None:
     heun("check", *pair, "--golden", "g", "--update", "--force")
     assert "nothing changed" in heun("diff", "g/swinging.json", "swinging.yaml").stdout

@@ -94,6 +94,7 @@ def codes_in_the_text() -> set[str]:
     return found
 
 
+@pytest.mark.heavy
 def test_every_code_is_explained(heun: Heun) -> None:
     """None is left out, and none is told of that is given nowhere."""
     codes = codes_of(TEXTS["codes"])

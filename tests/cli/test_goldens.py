@@ -174,6 +174,7 @@ def of_another_spec(text: str) -> str:
     return text.replace('"path": "hanging.yaml"', '"path": "other.yaml"')
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("spoilt", "told"),
     [

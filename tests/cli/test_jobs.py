@@ -29,6 +29,7 @@ def many(folder: Path) -> Path:
     return below
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("form", ["table", "json", "markdown", "github"])
 def test_what_is_told_does_not_depend_on_the_number_of_processes(heun: Heun, many: Path, form: str) -> None:
     one, *others = (heun("check", "many", "--format", form, "--jobs", n) for n in ("1", "2", "5"))
@@ -36,6 +37,7 @@ def test_what_is_told_does_not_depend_on_the_number_of_processes(heun: Heun, man
     assert all(other == one for other in others)
 
 
+@pytest.mark.heavy
 def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     at_work = command.check
 
@@ -57,6 +59,7 @@ def test_x_ends_at_the_first_that_fails(heun: Heun, many: Path) -> None:
     assert one.stdout.splitlines()[-1] == "2 specs, 1 passed, 1 failed"
 
 
+@pytest.mark.heavy
 def test_k_picks_by_path_and_title(heun: Heun, many: Path) -> None:
     assert heun("check", "many", "-k", "SCENE 11").stdout.startswith("1 spec, ")
     assert heun("check", "many", "-k", "many/0").stdout.splitlines()[-1].startswith("10 specs, ")

@@ -59,6 +59,7 @@ def test_long_form_says_the_same(heun: Heun, pendulum: str) -> None:
         assert own[name, "epsilon", "B.angle"] == found["epsilon"][i][1]
 
 
+@pytest.mark.heavy
 def test_an_instant_of_a_motion(heun: Heun, pendulum: str) -> None:
     """The same coordinates, rates and accelerations as the run tells there; and the turns are counted."""
     run = json.loads(heun("run", pendulum, "--format", "json").stdout)

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from heuncli.commands.new.command import kinds
+from heuncli.published.files import names
 from heuncli.spec.load import load
 from tests.shared.command import Heun
 
@@ -27,10 +28,15 @@ KINDS = (
 def test_the_kinds_are_listed(heun: Heun) -> None:
     assert tuple(kinds()) == KINDS
     lines = heun("new").stdout.splitlines()
-    assert [line.split()[0] for line in lines] == [*KINDS]
+    gap = lines.index("")
+    assert [line.split()[0] for line in lines[:gap]] == [*KINDS]
+    assert "heun check --references" in lines[gap + 1]
+    assert [line.split()[0] for line in lines[gap + 2 :]] == [*names()]
+    assert not {*KINDS} & {*names()}
     assert max(map(len, lines)) <= 120
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_starter_runs_and_holds_what_it_expects(heun: Heun, folder: Path, kind: str) -> None:
     assert heun("new", kind).returncode == 0

@@ -61,6 +61,7 @@ def test_told_in_a_line_and_nothing_written(bars: Path, heun: Heun, words: Seque
     assert set(bars.iterdir()) == before
 
 
+@pytest.mark.heavy
 def test_nothing_is_drawn_beyond_the_horizon(folder: Path, heun: Heun) -> None:
     """Of a chaotic motion the envelope ends there, which is told; a later instant is refused."""
     (folder / "wild.yaml").write_text("""
@@ -101,6 +102,7 @@ def test_cases_and_specs_over_each_other(bars: Path, heun: Heun) -> None:
     assert heavy.min() < light.min()
 
 
+@pytest.mark.heavy
 def test_a_figure_repeats_to_the_byte_and_units_are_shown(bars: Path, heun: Heun) -> None:
     for name in ("one.svg", "two.svg"):
         assert heun("plot", "conrod.yaml", "sections.shank", "--units", "kN,mm", "-o", name).returncode == 0

@@ -27,6 +27,7 @@ def test_a_full_disk_is_5(folder: Path, words: str) -> None:
     assert done.stderr.startswith("heun: standard output: No space left on device [output-failed]\n  hint: ")
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("line", "code", "kept"),
     [
@@ -78,6 +79,7 @@ def test_unbuffered_output_is_whole_or_said_not_to_be(form: str, folder: Path) -
     assert (gone.returncode, gone.stderr) == (141, "")
 
 
+@pytest.mark.heavy
 def test_an_interrupt_is_130(folder: Path) -> None:
     command = [sys.executable, "-m", "heuncli", "run", "long.yaml"]
     heard = signal.signal(signal.SIGINT, signal.default_int_handler)  # one that is ignored is ignored by children too

@@ -25,6 +25,7 @@ from tests.shared.folders import SPECS
 from tests.shared.shell import shell
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("words", ["run", "run --format json", "run --format csv", "check"])
 def test_what_would_not_fit_is_refused_with_what_would(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch, words: str

@@ -147,6 +147,7 @@ def test_csv_names_every_number_by_its_path(count: tuple[int, int, int]) -> None
         assert (repr(float(there.values[at[0]] + 0.0)) if row["value"] else "nan") == (row["value"] or "nan"), row
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("cuts", [2, 3, 4])
 def test_expectations_of_lists_go_by_the_schema(heun: Heun, cuts: int) -> None:
     study = study_of((1, cuts, cuts))

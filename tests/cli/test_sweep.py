@@ -131,6 +131,7 @@ def test_what_does_not_happen_in_a_variant_is_no_error_of_it(heun: Heun, scene: 
     assert done.stderr == "warning: heun: first events.low.time: no variant has it\n"
 
 
+@pytest.mark.heavy
 def test_warnings_of_axes_and_of_variants(heun: Heun, scene: Path) -> None:
     done = sweep(heun, "n=1:5/4", "idle=1,2", "L=1m")
     assert done.returncode == 0
@@ -157,6 +158,7 @@ n [rpm],"m/g",L
 """
 
 
+@pytest.mark.heavy
 def test_a_table_of_variants(heun: Heun, scene: Path) -> None:
     (scene / "table.csv").write_text(TABLE)
     done = sweep(heun, "--variants", "table.csv")
@@ -168,6 +170,7 @@ def test_a_table_of_variants(heun: Heun, scene: Path) -> None:
     assert two["m"] == "2.5 kg" and two["L"] == "n*0.05"
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("mark", [";", "\t"])
 def test_tables_of_other_programs(heun: Heun, scene: Path, mark: str) -> None:
     comma = "," if mark == ";" else "."
@@ -181,6 +184,7 @@ def test_tables_of_other_programs(heun: Heun, scene: Path, mark: str) -> None:
     ]
 
 
+@pytest.mark.heavy
 def test_a_table_and_axes(heun: Heun, scene: Path) -> None:
     """Each row of the table with each value of the axis; with --zip one by one."""
     (scene / "table.csv").write_text("n [rpm],m\n60,1\n120,2\n")
@@ -258,6 +262,7 @@ def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(
     assert [row["code"] for row in rows(done)] == ["", "too-much-memory"]
 
 
+@pytest.mark.heavy
 def test_standard_input_is_a_spec_and_a_table(heun: Heun, scene: Path) -> None:
     words = ("m=1,2kg", *FORCE, "--format", "csv")
     assert heun("sweep", "-", *words, text=SCENE) == heun("sweep", "scene.yaml", *words)

@@ -62,6 +62,7 @@ def swept(heun: Heun, folder: Path, *words: str) -> tuple[list[dict[str, str]], 
     return rows, json.loads((folder / "out.json").read_text()), pq.read_table(folder / "out.parquet")
 
 
+@pytest.mark.heavy
 def test_csv_json_and_parquet_agree(heun: Heun, folder: Path) -> None:
     rows, found, table = swept(heun, folder, "L=2200,1200,1400mm", "m=1,1+1", "angle=0")
     assert len(rows) == len(found["rows"]) == table.num_rows == 6
@@ -139,6 +140,7 @@ def test_what_could_not_be_solved_is_left_out_of_statistics_and_counted(heun: He
     assert f"30 variants, {lost} left out" in text and "left out: could not be solved" in text
 
 
+@pytest.mark.heavy
 def test_indices_leave_out_whole_samples(heun: Heun) -> None:
     words = ("m=uniform(-0.2,2)kg", "bodies.bar.center=[0, 0, -1]", "--samples", "40", "--indices")
     found = random_sweep(heun, *words)
@@ -215,6 +217,7 @@ def test_no_more_digits_than_the_error_supports_and_in_the_units_asked_for() -> 
     assert alone[2].split()[1] == alone[3].split()[1] == "?"
 
 
+@pytest.mark.heavy
 def test_a_long_sweep_shows_its_ends_and_its_extremes() -> None:
     plan = plan_of([axis("n=1:1000/1000"), axis("k=1")])
     values: list[float | None] = [float(k) for k in range(1000)]
@@ -272,6 +275,7 @@ class Texts(Sequence[str]):
         return f"{float(place)} rpm"
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("form", ["csv", "json", "parquet"])
 def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     plan = plan_of([ParameterAxis("n", Texts())])
@@ -291,6 +295,7 @@ def test_memory_does_not_grow_with_the_rows(form: str, tmp_path: Path, monkeypat
     assert peaks[1] < 1.1 * peaks[0] + 100_000, peaks
 
 
+@pytest.mark.heavy
 def test_statistics_take_floats_alone(tmp_path: Path) -> None:
     """Of each measure a value and an error, and the number of the variant: 24 bytes."""
     importlib.import_module("scipy.special")  # whose code is no part of it

@@ -47,6 +47,7 @@ def found_by(heun: Heun, *words: str, code: int = 0) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.heavy
 def test_the_table_and_the_line_that_can_be_pasted(heun: Heun) -> None:
     """The line gives the numbers of the best variant, to the bit."""
     words = ["b=1.05:1.9m", "--minimise", "joints.k.force", "--subject-to", "joints.a.force > 0.02 kN"]
@@ -86,6 +87,7 @@ def test_json(heun: Heun) -> None:
         assert after["best"] == min(before["best"], after["goal"])
 
 
+@pytest.mark.heavy
 def test_the_history_as_a_file(heun: Heun, folder: Path) -> None:
     words = ["gable.yaml", "b=0.5:1.9m", "--maximise", "joints.k.force", "--history", "tried.csv"]
     told = found_by(heun, *words, "--subject-to", "joints.k.force<50", "--evaluations", "60")
@@ -98,6 +100,7 @@ def test_the_history_as_a_file(heun: Heun, folder: Path) -> None:
         assert (float(row[7]) if row[7] else None) == one["best"]
 
 
+@pytest.mark.heavy
 def test_half_of_the_box_does_not_close(heun: Heun) -> None:
     """Counted by its code; the best lies in the other half."""
     told = found_by(heun, "gable.yaml", "b=0.8:1.8m", "--minimise", "joints.k.force", "--evaluations", "200")
@@ -108,6 +111,7 @@ def test_half_of_the_box_does_not_close(heun: Heun) -> None:
     assert re.search(rf"9 variants, of which \d could not be solved: {code} \d\n", done.stdout)
 
 
+@pytest.mark.heavy
 def test_nothing_can_be_solved(heun: Heun) -> None:
     done = heun("tune", "gable.yaml", "b=0.2:0.9m", "--minimise", "joints.k.force", "--evaluations", "9")
     assert done.returncode == 3 and done.stdout == ""
@@ -130,6 +134,7 @@ def test_the_budget_is_kept_and_said(heun: Heun) -> None:
     assert done.returncode == 1 and "not converged" in done.stdout
 
 
+@pytest.mark.heavy
 def test_nothing_feasible_is_said(heun: Heun) -> None:
     words = ["tune", "hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z < 9 N"]
     words += ["--subject-to", "joints.pivot.force.z > 1 N"]
@@ -145,6 +150,7 @@ def test_nothing_feasible_is_said(heun: Heun) -> None:
     assert second["met"] and second["left"] == pytest.approx(8.81)
 
 
+@pytest.mark.heavy
 def test_what_is_asked_of_a_constraint_that_is_just_met(heun: Heun) -> None:
     """At its limit < is not met and <= is."""
     told = found_by(heun, "hanging.yaml", "m=1:2kg", "--maximise", "joints.pivot.force.z",
@@ -153,6 +159,7 @@ def test_what_is_asked_of_a_constraint_that_is_just_met(heun: Heun) -> None:
     assert kept_to["met"] and kept_to["active"] and told["goal"]["best"]["value"] == pytest.approx(14.715, abs=1e-4)
 
 
+@pytest.mark.heavy
 def test_units_of_the_table(heun: Heun) -> None:
     words = ["hanging.yaml", "m=1:2kg", *WEIGHT, "--subject-to", "joints.pivot.force.z > 12 N", "--units", "kN"]
     done = heun("tune", *words)
@@ -161,6 +168,7 @@ def test_units_of_the_table(heun: Heun) -> None:
     assert json.loads(done.stdout)["goal"]["unit"] == "N" and "json stays in SI" in done.stderr
 
 
+@pytest.mark.heavy
 def test_what_is_set_for_all_variants(heun: Heun, folder: Path) -> None:
     """Load case, overrides and tolerance hold in all of them, and stand in the line that is told."""
     cases = HANGING.replace("-9.81]", "-g]").replace("{m: 1.0}", "{m: 1.0, g: 10}")
@@ -192,6 +200,7 @@ def test_the_time_limit_tells_the_best_so_far(heun: Heun) -> None:
     assert done.returncode == 4 and "not converged: the time limit is reached; this is the best so far" in done.stdout
 
 
+@pytest.mark.heavy
 def test_a_time_limit_before_anything_is_solved(heun: Heun) -> None:
     done = heun("tune", "long.yaml", "m=1:2kg", *WEIGHT, "--time-limit", "0.3")
     assert done.returncode == 4 and done.stdout == "" and "[time-limit]" in done.stderr

@@ -47,6 +47,7 @@ def test_at_the_start(load: str, v: float, analysis: str) -> None:
     assert refused(scene(load, 0, v, analysis)) == 0.0
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(("load", "x", "v", "instant"), [
     # from x at v with -10 or what pulls: v t + x + a t²/2 = 0
     ("type: actuator, value: -10", -1, 0, np.sqrt(0.2)),
@@ -86,6 +87,7 @@ def test_what_does_not_come_together_or_does_not_push_goes_on(load: str, x: floa
     assert solved(scene(load, x, v, MOTION)).status["code"] == "completed"
 
 
+@pytest.mark.heavy
 def test_passing_by_is_no_coincidence() -> None:
     """A free body passes the anchor of a spring at a centimetre."""
     text = re.sub("joints: .*\n", "", scene(SPRING, -0.5, 3, MOTION))

@@ -48,6 +48,7 @@ def sum_of(found: BalanceResults, what: str, lever: float) -> float:
     return {"force": force**2, "moment": moment**2, "mix": force**2 + (moment / lever) ** 2}[what]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("what", ["force", "moment", "mix"])
 @pytest.mark.parametrize("places", PLACES)
 @pytest.mark.parametrize("seed", SEEDS)
@@ -65,6 +66,7 @@ def test_a_weight_leaves_what_it_promised(seed: int, places: str, what: str) -> 
     assert before == pytest.approx(found.residual["torque"].rms, rel=1e-9)  # nothing else loads this linkage
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("places", ["crank", "crank and coupler", "rocker"])
 def test_no_weight_beside_it_leaves_less(places: str) -> None:
     """Turned or moved by a little, a weight of the same mass leaves no less of what was to be least."""

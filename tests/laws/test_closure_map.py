@@ -161,6 +161,7 @@ def test_free_directions_take_what_the_jacobian_says(of: tuple[Callable[[int], C
         assert np.abs(along + lambdas[k, 0] @ J[k]).max() <= 1e-12 * PUSH * len(layout.rows) * max(c.length, 1.0)
 
 
+@pytest.mark.heavy
 def test_what_was_asked_in_between_changes_nothing() -> None:
     """A recovery is the same bits before and after the doors were used."""
     _, setup, recovered = solved(doubles.redundant, 2003)

@@ -110,6 +110,7 @@ sections: {along: {body: bar, from: a, to: d, count: 5}}
             assert off <= shown[moment].pixel + 0.5 * shown[shear].pixel * (b - a)
 
 
+@pytest.mark.heavy
 def test_told_from_the_other_end_forces_turn_over() -> None:
     """From end to start: N stays, and every place is told from there; the pictures say the same of the bar."""
     mine, its = WholeBar(flail(), "along").at(0.1), WholeBar(flail(ends="from: e, to: a"), "along").at(0.1)

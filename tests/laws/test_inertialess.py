@@ -191,6 +191,7 @@ def test_the_turning_inertia_may_be_light_or_heavy(inertia: float, lever: float)
     near(found.joints["D"]["force"][0, 0], -(3 - inertia * alpha) / lever, 3 / lever, digits)
 
 
+@pytest.mark.heavy
 def test_as_with_next_to_no_inertia() -> None:
     """What small true inertias tend to, by Richardson's rule."""
     more = ", angular_velocity: [0, 0, 2]}}\njoints"

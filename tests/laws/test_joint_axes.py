@@ -109,6 +109,7 @@ def measured(path: Path, what: str, capsys: pytest.CaptureFixture[str], *words: 
     return float(capsys.readouterr().out)
 
 
+@pytest.mark.heavy
 def test_an_unbalance_stands_still_in_the_axes_of_the_rotor(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """F' = -m e n^2 e_y + m g e_z (t): the weight turns, its extremes lie between the samples."""
     spec = tmp_path / "rotor.yaml"

@@ -149,6 +149,7 @@ def test_a_split_is_found_at_each_instant() -> None:
     assert columns_of(found).verdicts is None
 
 
+@pytest.mark.heavy
 def test_searches_of_one_run_share_their_instants(monkeypatch: pytest.MonkeyPatch) -> None:
     """The grid of a second search is not solved again."""
     found = solve(load(str(SPECS / "four_bar.yaml")), Options())

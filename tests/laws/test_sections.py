@@ -251,6 +251,7 @@ def cut_of(where: str, seed: int) -> Results:
     return solved(scene)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", range(4))
 def test_moments_about_other_points(seed: int) -> None:
     """M'(P) = M'(at) + (at − P) × s'; s' is the same. The centroid is that of both boxes' rectangles together."""

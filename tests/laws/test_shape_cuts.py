@@ -105,6 +105,7 @@ def richardson(shape: Shape, n: Array, d: float) -> Array:
     return (4.0 * solid(1024) - solid(512)) / 3.0
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["cylinder", "tube", "cone", "frustum"])
 def test_round_shapes_against_prisms_of_many_sides(name: str) -> None:
     shape = SOLIDS[name]

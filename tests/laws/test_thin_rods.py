@@ -45,6 +45,7 @@ def with_axial(scene: dict[str, Any], ratio: float) -> dict[str, Any]:
     return {**scene, "bodies": bodies}
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("ratio", [1e-3, 1e-6, 1e-9])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_any_axial_inertia_gives_the_same(seed: int, ratio: float) -> None:
@@ -135,6 +136,7 @@ def test_a_moment_across_the_axis_is_not() -> None:
     near(found.bodies["rod"]["angular_acceleration"][0], [0.0, (2 * 9.81 * 0.5 + 0.3) / (2 / 3), 0.0], 10.0, 1e-14)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("cables", [1, 2])
 def test_rounding_is_no_moment(cables: int) -> None:
     """Thin bars hung on cables in no particular direction, slack in part: what rounding puts on the axis is nothing."""

@@ -66,6 +66,7 @@ def tree(seed: int, **more: Any) -> tuple[dict[str, Any], Results]:
     return scene, run_tree(scene)
 
 
+@pytest.mark.heavy
 @each(("turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"), TREES)
 def test_a_tree(seed: int, way: str) -> None:
     scene, first = tree(seed)
@@ -92,6 +93,7 @@ def loop(seed: int) -> tuple[dict[str, Any], Results]:
     return scene, run_loop(scene)
 
 
+@pytest.mark.heavy
 @each(("turned", "mirrored", "mm, t, ms", "renamed", "renamed again", "other origins", "other ends"), LOOPS)
 def test_a_loop(seed: int, way: str) -> None:
     scene, first = loop(seed)
@@ -166,6 +168,7 @@ def closed_at(run: Study) -> set[str]:
     return {scene.mechanism.joints[k].name for k in scene.layout.spanning.cut}
 
 
+@pytest.mark.heavy
 def test_closed_elsewhere() -> None:
     """Joints told in reverse close chains at others: counted, so that the test of it tests something."""
     elsewhere = 0

@@ -36,6 +36,7 @@ def welds(seed: int) -> dict[tuple[int, str], Section]:
             for k, t, state in instants(c.study.results) for name, cut in c.scene["sections"].items()}  # fmt: skip
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", THESE)
 def test_cut_bodies(seed: int) -> None:
     c = sawn(seed)

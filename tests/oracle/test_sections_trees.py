@@ -75,6 +75,7 @@ def test_a_cut_carries_what_its_weld_would(seed: int) -> None:
             near([found["T"], found["M1"], found["M2"]], [weld.moment @ a for a in (weld.normal, e1, e2)], M)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", SEEDS)
 def test_both_sides_add_to_nothing(seed: int) -> None:
     c = sawn(seed)

@@ -22,6 +22,7 @@ LINES = {  # of others: the spec
     "methods": (), "explain": (), "schema": (), "new": (),
     "diff": ("-", "nosuch.json"), "find": ("-", "bodies.bar.mass=1:2kg", "max joints.pivot.force = 15 N"),
     "sensitivity": ("-", "bodies.bar.mass", "--measure", "max joints.pivot.force"),
+    "export": ("loads", "-", "--at", "last"),
     "chart": ("-", "--methods", "RK4", "--steps", "0.02"),
 }  # fmt: skip
 SWINGING = """\
@@ -62,6 +63,7 @@ def folders_of(modules: set[str]) -> Iterator[str]:
     return (name.split(".")[2] for name in modules)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("command", COMMANDS, ids=[command.name for command in COMMANDS])
 def test_a_command_loads_nothing_of_another(command: Command) -> None:
     found = loaded(command.name, *LINES.get(command.name, ("-",)))

@@ -75,6 +75,7 @@ def test_installers_can_load_the_build_by_itself(tmp_path: Path) -> None:
     assert (run.stdout, run.returncode) == ("BuildKernel\n", 0), run.stderr
 
 
+@pytest.mark.heavy
 def test_a_failed_build_is_an_error_and_leaves_nothing_among_the_sources(tmp_path: Path) -> None:
     """Where there is no compiler: an error here, the plain files where it is installed (.ci/run)."""
     pytest.importorskip("setuptools", "77")

@@ -107,6 +107,7 @@ def test_a_sweep_does_without_what_clusters_need() -> None:
     assert not found & (clusters | {"scipy", "rich", "pydantic"})
 
 
+@pytest.mark.heavy
 def test_a_sweep_loads_only_what_it_is_asked_for() -> None:
     measure = ("--measure", "final joints.right.force.z", "--jobs", "1", "-q")
     words = ("sweep", str(ROOT / "specs" / "rotor.yaml"), *measure)

@@ -6,6 +6,8 @@ import ast
 import re
 from pathlib import Path
 
+import pytest
+
 from tests.shared.folders import ROOT
 
 OTHERS = re.compile(
@@ -34,6 +36,7 @@ def test_such_an_import_is_found() -> None:
     assert not OTHERS.search("from tests.shared.scenes import near")
 
 
+@pytest.mark.heavy
 def test_every_file_says_what_it_is_for() -> None:
     files = [path for path in (ROOT / "tests").rglob("*.py") if path.name != "__init__.py"]
     assert not [path for path in files if not ast.get_docstring(ast.parse(path.read_text()))]

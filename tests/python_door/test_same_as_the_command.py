@@ -99,6 +99,23 @@ def test_measures_are_those_of_the_command(heun: Heun) -> None:
             ), word  # fmt: skip
 
 
+@pytest.mark.heavy
+def test_collectives_and_load_cases_are_those_of_the_command(heun: Heun) -> None:
+    path = SPECS / "engine.yaml"
+    study = solved(path)
+    words = ("--collective", "joints.main.force.y", "--slope", "5", "--format", "json")
+    (block,) = json.loads(heun("run", str(path), *words).stdout)["collectives"].values()
+    found = study.collective("joints.main.force.y", slopes=5)
+    assert block["cycles"] == found.total and block["equivalent"][0]["range"] == found.equivalents[0].range
+    cases = study.load_cases("rod", at="peak:joints.big.force,0.01").cases
+    assert cases[1].time == 0.01 and cases[0].time == study["joints.big.force"].largest().at
+    force = sum(action.force for action in cases[1].actions if action.name == "big")
+    rotation = study["bodies.rod.rotation"].at(0.01)
+    assert np.abs(rotation @ force) == pytest.approx(np.abs(study["joints.big.force"].at(0.01)), abs=1e-6)
+    with pytest.raises(heuncli.UsageError, match="known: crank, rod, piston"):
+        study.load_cases("rood", at=0)
+
+
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_errors_are_those_of_the_command(heun: Heun, path: Path) -> None:
     kind, code, _, _, _, name, value = head(path).groups()

@@ -73,6 +73,7 @@ def test_one_instant_has_a_line_a_number_with_what_is_direct() -> None:
     assert [row.strip() for row in found[1].rows if isinstance(row, str) and "open" in row] == ["open: Fz, |F|"] * 2
 
 
+@pytest.mark.heavy
 def test_csv_has_a_column_cause_where_shares_are_told() -> None:
     made, _ = study_of("double")
     spec = made.spec

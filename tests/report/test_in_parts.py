@@ -69,6 +69,7 @@ def both(spec: Spec) -> tuple[Study, Study]:
     return solve(spec, Options()), solve(spec, Options(in_parts=True))
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", [*TREES, *WHOLE])
 def test_parts_are_written_as_the_whole_is(name: str, small: None, monkeypatch: pytest.MonkeyPatch) -> None:
     spec = load(str(SPECS / f"{name}.yaml"))

@@ -103,6 +103,7 @@ def test_a_piece_that_is_no_number_is_a_branch_too() -> None:
     assert found == [1.0, 1.25]
 
 
+@pytest.mark.heavy
 def test_without_end_is_refused() -> None:
     with pytest.raises(LimitError) as caught:
         discontinuities(read("step(sin(1e7*t))"), 0.0, 1.0)
@@ -143,6 +144,7 @@ def test_what_cannot_be_decided_is_seen_to_stay(text: str) -> None:
     assert discontinuities(read(text), 0.0, 2.0) == []
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("outside", ["hold", None])
 def test_the_points_of_a_table_of_the_time_are_what_a_search_finds(outside: str | None) -> None:
     """To the last bit, also of many points between neighbouring instants of the search's grid, and of the ends."""

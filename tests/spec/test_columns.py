@@ -79,6 +79,7 @@ def test_a_first_row_of_numbers_is_a_point(text: str, expected: object) -> None:
     assert (found[0] if isinstance(found, list) else found[1]) == expected  # type: ignore[index]
 
 
+@pytest.mark.heavy
 def test_two_million_rows(tmp_path: Path) -> None:
     rows = "\n".join(map("%d,1".__mod__, range(2_000_000)))
     (tmp_path / "large.csv").write_text(f"x,y\n{rows}\n")

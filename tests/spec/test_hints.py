@@ -216,5 +216,6 @@ def without_hint(path: Path) -> Iterator[str]:
             yield f"{path.name}:{node.lineno} {ast.unparse(node)}"
 
 
+@pytest.mark.heavy
 def test_every_error_says_what_to_do_next() -> None:
     assert [found for path in sorted(PACKAGE.rglob("*.py")) for found in without_hint(path)] == []

@@ -46,6 +46,7 @@ def of_results() -> Draft7Validator:
     return Draft7Validator(schema)
 
 
+@pytest.mark.heavy
 def test_check_jsonschema_passes_every_spec_and_starter(tmp_path: Path) -> None:
     schema = tmp_path / "heun.schema.json"
     schema.write_text(json.dumps(spec_schema()))
@@ -154,6 +155,7 @@ def test_every_result_is_what_the_schema_of_results_says(path: Path) -> None:
     assert [error.json_path for error in of_results().iter_errors(kinds(results)[0])] == []
 
 
+@pytest.mark.heavy
 def test_the_schema_of_results_refuses_what_is_none() -> None:
     results = json.loads(to_json(solve(load(str(ROOT / "specs" / "double.yaml")), Options()).results))
     assert of_results().is_valid(results)

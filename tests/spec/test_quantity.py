@@ -131,6 +131,7 @@ def test_the_list_of_units_is_readable() -> None:
         assert symbol in u.UNITS, spelling
 
 
+@pytest.mark.heavy
 @given(st.text(max_size=30))
 @settings(max_examples=200, deadline=None, derandomize=True)
 def test_any_text_is_a_number_or_a_finding(text: str) -> None:

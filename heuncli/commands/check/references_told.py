@@ -111,7 +111,8 @@ def farthest(tables: Sequence[ComparedTable]) -> tuple[str, str]:
     shares = [abs(one.difference) / part.largest for part in tables if not part.is_to_the_digit for one in part.numbers]
     share = max(shares, default=0.0)
     told = f"{share:.0e}" if share > NEGLIGIBLE else f"< {NEGLIGIBLE:g}"
-    return f"{max(digits):.1f}" if digits else "", told if shares else ""
+    digit = max(digits, default=0.0)
+    return f"{digit:.{1 if digit < 1.0 else 0}f}" if digits else "", told if shares else ""
 
 
 def digits_of(numbers: Sequence[ComparedNumber]) -> str:

@@ -153,7 +153,7 @@ def _require_writable(form: str, cases: LoadCases) -> None:
     """Raise UsageError for a blow in a deck, which knows forces."""
     struck = [case.name for case in cases.cases if case.struck]
     if struck and DECKS[form].static:
-        message = f"--at {struck[0]}: a blow is told in {cases.units[0]} s, and a {form} deck knows forces"
+        message = f"--at {struck[0]}: a blow is told in {cases.units[0]} s, and a deck for {form} knows forces"
         hint = "--blow-over SECONDS gives the mean loads of so long a time; or --format csv"
         raise UsageError(Problem("bad-option", message, hint=hint))
 

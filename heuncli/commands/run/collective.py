@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 from heuncli.cli.entry import UsageError
 from heuncli.cli.solving import all_or_errors
 from heuncli.cli.units import TABLES
-from heuncli.collectives.counted import BINS, LEAST_SLOPE, MOST_BINS, Counting
+from heuncli.collectives.counted import BINS, Counting
 from heuncli.commands.run.request import RunRequest
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
@@ -21,11 +22,11 @@ from heuncli.results_paths import find
 from heuncli.spec.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber
 from heuncli.study.ask.study import Study
-from heuncli.telling.collectives import collectives
+from heuncli.telling.collectives import collectives, said
 from heuncli.telling.measure import check
 
 OPTION = "--collective"
-MOST_REPEATS = 10**12
+OPTIONS = {"slopes": "slope"}  # what is called otherwise in Counting
 ALONE = ("measure", "only", "at", "all", "by_cause")  # options of what else a run tells
 
 
@@ -39,14 +40,11 @@ class CollectiveTask(NamedTuple):
 def parse(request: RunRequest) -> CollectiveTask:
     """What is asked for. Raises UsageError with all that is wrong."""
     others = [name for name in ALONE if getattr(request, name)]
-    calls: tuple[Callable[[], object], ...] = (
-        partial(require_alone, others), partial(paths_of, request.collective or ""), partial(slopes_of, request.slope),
-        partial(cycles_of, request.cycles), partial(bins_of, request.bins), partial(repeat_of, request.repeat),
+    calls: tuple[Callable[[], Any], ...] = (
+        partial(require_alone, others), partial(paths_of, request.collective or ""), partial(counting_of, request),
     )  # fmt: skip
-    all_or_errors(calls)
-    repeat, closed = repeat_of(request.repeat)
-    counting = Counting(slopes_of(request.slope), cycles_of(request.cycles), bins_of(request.bins), repeat, closed)
-    return CollectiveTask(paths_of(request.collective or ""), counting)
+    _, paths, counting = all_or_errors(calls)
+    return CollectiveTask(paths, counting)
 
 
 def require_collective(request: RunRequest) -> None:
@@ -76,47 +74,34 @@ def paths_of(words: str) -> list[str]:
     return list(dict.fromkeys(paths))
 
 
-def slopes_of(words: str | None) -> tuple[float, ...]:
-    """The slopes of Wöhler lines."""
-    if words is None:
-        return ()
+def counting_of(request: RunRequest) -> Counting:
+    """How cycles are counted. Raises UsageError with all options that tell no such way."""
+    closed = request.repeat == CLOSED
+    asked = Counting(
+        slopes=() if request.slope is None else tuple(dict.fromkeys(map(number_in, request.slope.split(",")))),
+        cycles=request.cycles,
+        bins=BINS if request.bins is None else request.bins,
+        repeat=1 if closed or request.repeat is None else whole_in(request.repeat),
+        closed=closed,
+    )
+    if unfit := asked.unfit():
+        options = [(one, OPTIONS.get(one.name, one.name)) for one in unfit]
+        raise UsageError(*(said(one, f"--{option}", getattr(request, option)) for one, option in options))
+    return asked
+
+
+def number_in(word: str) -> float:
+    """The number that a word is; nan where it is none."""
     try:
-        slopes = [float(word) for word in words.split(",")]
+        return float(word)
     except ValueError:
-        slopes = [math.nan]
-    if not all(LEAST_SLOPE <= slope <= 100.0 for slope in slopes):
-        raise wrong(f"--slope {words}: expected slopes m of N R^m = constant, from 1 to 100", "such as --slope 3,5")
-    return tuple(dict.fromkeys(slopes))
+        return math.nan
 
 
-def cycles_of(cycles: float | None) -> float | None:
-    """Of how many cycles equivalent ranges are."""
-    if cycles is not None and not (math.isfinite(cycles) and cycles > 0.0):
-        raise wrong(f"--cycles {cycles:g}: expected of how many cycles equivalent ranges are", "such as --cycles 1e6")
-    return cycles
-
-
-def bins_of(bins: int | None) -> int:
-    """How many classes."""
-    if bins is not None and not 1 <= bins <= MOST_BINS:
-        raise wrong(f"--bins {bins}: expected 1 to {MOST_BINS} classes of ranges and means", f"the default is {BINS}")
-    return BINS if bins is None else bins
-
-
-def repeat_of(words: str | None) -> tuple[int, bool]:
-    """How often the motion is told; whether it is repeated for ever, and one time counted."""
-    if words is None:
-        return 1, False
-    if words == CLOSED:
-        return 1, True
-    try:
-        times = float(words)
-    except ValueError:
-        times = math.nan
-    if not (1.0 <= times <= MOST_REPEATS and times == int(times)):
-        message = f"--repeat {words}: expected how often the motion is run through, or {CLOSED}"
-        raise wrong(message, f"--repeat 1000; or --repeat {CLOSED}: for ever, of which one time is counted")
-    return int(times), False
+def whole_in(word: str) -> int:
+    """The whole number that a word is, as 1e6; 0 where it is none."""
+    number = number_in(word)
+    return int(number) if math.isfinite(number) and number == int(number) else 0
 
 
 def wrong(message: str, hint: str) -> UsageError:
@@ -144,5 +129,5 @@ def told(asked: CollectiveTask, study: Study, form: str, units: Units) -> str | 
         return dump(head | {"status": results.status, "collectives": {one.history.path: block(one) for one in found}})
     if form not in TABLES:
         return "".join(csv_lines(found))
-    struck = bool(results.impulses)
+    struck = bool(study.history.blows)
     return [table for one in found for table in tables(one, units, struck=struck)]

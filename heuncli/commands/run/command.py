@@ -13,7 +13,7 @@ from heuncli.cli.target import format_of
 from heuncli.cli.units import TABLES, say_what_stays, units
 from heuncli.commands.run.request import FORMATS, RunRequest
 from heuncli.commands.run.scene import RunTask, leave, solved
-from heuncli.door.solving import read
+from heuncli.door import read
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.records import replace
 from heuncli.report.page import EXPORT_DEFAULT
@@ -76,7 +76,7 @@ def main(request: RunRequest) -> int:
 
 
 def _counted(request: RunRequest) -> CollectiveTask | None:
-    """The collectives that are asked for."""
+    """The collectives that are asked for. Raises UsageError."""
     if all(getattr(request, name) is None for name in ("collective", "slope", "cycles", "bins", "repeat")):
         return None
     from heuncli.commands.run import collective  # with what counts

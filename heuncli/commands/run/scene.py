@@ -11,7 +11,7 @@ from heuncli.cli.output import say
 from heuncli.cli.solving import instants, timings, warn
 from heuncli.cli.units import TABLES
 from heuncli.commands.run.request import RunRequest
-from heuncli.door.solving import solve_spec
+from heuncli.door import solve_spec
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.report.heading import write_heading, write_heading_markdown
@@ -48,7 +48,7 @@ class RunTask(NamedTuple):
 def solved(task: RunTask, spec: Spec) -> tuple[Study, Iterable[str]]:
     """A scene solved, and what is told of it as text, in pieces that are made as they are asked for."""
     request, what = task.request, task.what
-    study = solve_spec(spec, task.options).study
+    study = solve_spec(spec, task.options)
     with placed(spec):
         if task.asked:
             from heuncli.telling import measure
@@ -92,16 +92,16 @@ def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: 
     return _headed(request, form, study, tables)
 
 
+def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
+    """Collectives as text."""
+    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
+
+
 def _headed(request: RunRequest, form: str, study: Study, tables: list[TextTable]) -> str:
     """Tables below what was solved, and how well."""
     if form == "markdown":
         return write_heading_markdown(study.results, request.verbose) + "\n".join(map(markdown, tables))
     return write_heading(study.results, request.verbose) + "".join("\n" + text for text in _writer(request)(tables))
-
-
-def _counted(task: RunTask, study: Study, told: str | list[TextTable]) -> str:
-    """Collectives as text."""
-    return told if isinstance(told, str) else _headed(task.request, task.form, study, told)
 
 
 def _writer(request: RunRequest) -> Callable[[list[TextTable]], list[str]]:

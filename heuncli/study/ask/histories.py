@@ -19,10 +19,13 @@ from heuncli.results_schema import BLOWS, REPORTS, with_shared
 from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, is_even, report_of, several
 from heuncli.study.ask.study import Study
 from heuncli.study.search.columns import StudyColumns
-from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, finite
+from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, distinct, finite
+from heuncli.study.search.instants import own_extremes
 from heuncli.study.search.turnings import with_turnings
 
 CODE = "no-collective"
+EVENLY = 256  # intervals of a run that are looked into, whatever its steps
+FINELY = 10_000  # intervals at whose quarters loads in time are looked at
 MOST_INSTANTS = 400_000  # of a grid: a hundred thousand steps
 
 
@@ -44,6 +47,7 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
     searched = ColumnSearch(lambda results: columns(study, results, paths, even), [], error, even)
     sampled = StudyColumns(study, searched, with_shared(wanted), None)
     grid, enough = study.close_times(MOST_INSTANTS)
+    grid = with_own_turns(study, grid)
     rows = sampled.columns(grid) if enough else np.zeros((len(grid), len(paths)))
     largest = finite(np.abs(rows), 0.0).max(axis=0)
     error = np.maximum(error, tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest))
@@ -58,6 +62,14 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
         LoadHistory(path, units[path], times, values[:, k], float(whole[k]), squared, study.numbers(path).of_vectors)
         for k, (path, squared) in enumerate(zip(paths, even.tolist(), strict=True))
     ]
+
+
+def with_own_turns(study: Study, grid: Array) -> Array:
+    """A grid, and instants all over it, those among them at which loads in time turn, be they short: no step feels what
+    pushes a body that is held."""
+    evenly = np.linspace(grid[0], grid[-1], EVENLY + 1)
+    turns = own_extremes(study.setup.scene.mechanism, np.linspace(grid[0], grid[-1], FINELY + 1))
+    return np.asarray(distinct(np.concatenate([grid, evenly, *turns])))
 
 
 def columns(study: Study, results: Results, paths: Sequence[str], even: Mask) -> Array:
@@ -88,7 +100,7 @@ def require_history(study: Study, path: str) -> None:
 
 def require_claimed(study: Study, paths: Sequence[str]) -> None:
     """Raise SolveError for a motion that goes on beyond its horizon: what comes there is not known."""
-    horizon = study.results.accuracy.get("horizon")
+    horizon = study.results.horizon
     if horizon is not None and study.results.time[-1] >= horizon:
         end = f"the motion goes to t = {study.results.time[-1]:.6g} s"
         message = f"{', '.join(paths)}: {NOT_CLAIMED.format(horizon)}, and {end}"

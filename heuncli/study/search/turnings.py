@@ -1,17 +1,21 @@
-"""All turning points of sampled numbers, also those between the samples, searched as extremes are.
+"""All turning points of sampled numbers, also those between the samples.
 
-An interval between two neighbours hides a turn if it promises more than the higher of the two, or less than the lower
-(study/search/intervals.py). It is asked where it promises most and divided there, until no interval promises more than
-a part of the error. What the run does below its own error is not looked for.
+First a grid is made that shows how the numbers run: each interval is asked once, and divided there unless the cubic
+through four neighbours foretold what is found. For the one largest value of a run an interval that cannot hold it need
+not be looked into; for all turns each must be. Then, as extremes are searched (study/search/intervals.py): an interval
+hides a turn if it promises more than the higher of its ends, or less than the lower. It is asked where it promises most
+and divided there, until none promises more than a part of the error. What a run does below its own error is not looked
+for.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Indices, Mask
 from heuncli.study.search.extremes import (
     BOTH,
@@ -21,25 +25,40 @@ from heuncli.study.search.extremes import (
     Targets,
     distinct,
     intervals_above,
+    sides_of_jumps,
 )
 
 MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
+OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that repeats itself looks at rest
+FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
 
 
-def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> tuple[Array, Array, bool]:
-    """Instants (n,) ascending, with what is sampled there (n, n_columns); whether all turns are among them.
+class SampledTurns(NamedTuple):
+    """What was sampled: times (n,) ascending, values (n, n_columns); complete: whether all was looked at that may turn.
+
+    Ends where a number is open (nan).
+    """
+
+    times: Array
+    values: Array
+    complete: bool
+
+
+def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, even: Mask) -> SampledTurns:
+    """What is sampled at the instants of a grid and at all turns between them.
 
     times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns
-    are their squares. Ends where a number is open (nan).
+    are their squares.
     """
-    asked_times, values = [times], [grid]
-    if len(times) < 2 or not np.isfinite(grid).all():
-        return times, grid, True
+    found = resolved(sample, SampledTurns(times, grid, complete=True), errors, even)
+    if len(times) < 2 or not found.complete or not np.isfinite(found.values).all():
+        return found
     columns = np.arange(grid.shape[1], dtype=np.intp)
     asked = Targets(len(columns), columns, columns, errors, even)
     enough = margin(errors, even)
-    pool = intervals_above(times, grid, asked, enough, BOTH)
+    pool = intervals_above(found.times, found.values, asked, enough, BOTH)
     span, probes = float(np.ptp(times)), 0
+    parts = [found]
     for _ in range(MOST_ROUNDS):
         shape = pool.shape()
         beat = enough(pool.f[:, 1], pool.f[:, 2], pool.target)
@@ -50,19 +69,74 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
             break
         at = pool.probe(shape)
         instants = distinct(at)
-        found = sample(instants)
-        asked_times.append(instants)
-        values.append(found)
+        values = sample(instants)
+        parts.append(SampledTurns(instants, values, complete=True))
         probes += len(instants)
-        if np.isnan(found).any():
-            pool = pool.some(np.zeros(len(pool.target), dtype=bool))
-            break
+        if np.isnan(values).any():
+            return together(parts, complete=True)
         side = np.where(pool.target < asked.n, -1.0, 1.0)
-        pool = pool.divided(shape, at, side * found[np.searchsorted(instants, at), pool.column])
-    all_times, rows = np.concatenate(asked_times), np.concatenate(values)
-    order = np.argsort(all_times, kind="stable")
-    new = np.append(True, np.diff(all_times[order]) > 0.0)
-    return all_times[order][new], rows[order][new], not len(pool.target)
+        pool = pool.divided(shape, at, side * values[np.searchsorted(instants, at), pool.column])
+    return together(parts, complete=not len(pool.target))
+
+
+def resolved(sample: ColumnsAt, found: SampledTurns, errors: Array, even: Mask) -> SampledTurns:
+    """The grid with more instants where a number does not run as its neighbours foretell."""
+    span, asked = float(np.ptp(found.times)), 0
+    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that were not asked yet
+    for _ in range(MOST_ROUNDS):
+        times, values, _ = found
+        wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
+        k = np.flatnonzero(new & wide & ~sides_of_jumps(times))
+        if not len(k) or not np.isfinite(values).all():
+            return found
+        if asked > MOST_PROBES:
+            return found._replace(complete=False)
+        at = times[k] + OFF_MIDDLE * (times[k + 1] - times[k])
+        there = sample(at)
+        asked += len(at)
+        four = neighbours(times, k)
+        expected = cubic(times[four], values[four], at)
+        swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
+        size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
+        slack = np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors)
+        off = ~(np.abs(there - expected) <= np.maximum(FORETOLD * swing, slack)).all(axis=1)
+        found = together([found, SampledTurns(at, there, complete=True)], complete=True)
+        new = np.zeros(len(found.times) - 1, dtype=bool)
+        left = np.searchsorted(found.times, times[k[off]])
+        new[left] = new[left + 1] = True
+    return found._replace(complete=not new.any())
+
+
+def neighbours(times: Array, k: Indices) -> Indices:
+    """Four neighbouring instants about each interval, (m, 4), on no other side of a jump where that has four."""
+    jumps = np.flatnonzero(sides_of_jumps(times))
+    first = np.concatenate([[0], jumps + 1])
+    last = np.concatenate([jumps, [len(times) - 1]])
+    own = np.searchsorted(first, k, side="right") - 1
+    begin = np.clip(k - 1, first[own], np.maximum(last[own] - 3, first[own]))
+    return np.asarray(np.minimum(begin[:, None] + np.arange(4), len(times) - 1))
+
+
+def cubic(t: Array, f: Array, at: Array) -> Array:
+    """What the cubics through four points each, t (m, 4), f (m, 4, n), have at one instant each, (m, n).
+
+    Where two of the points are one, or two sides of a jump, it is no number.
+    """
+    value = np.zeros((len(at), f.shape[2]))
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        for i in range(4):
+            others = [j for j in range(4) if j != i]
+            weight = np.prod([(at - t[:, j]) / (t[:, i] - t[:, j]) for j in others], axis=0)
+            value += weight[:, None] * f[:, i]
+    return value
+
+
+def together(parts: Sequence[SampledTurns], *, complete: bool) -> SampledTurns:
+    """All instants that were asked, ascending, each once."""
+    times, values = (np.concatenate([part[i] for part in parts]) for i in (0, 1))
+    order = np.argsort(times, kind="stable")
+    first = np.append(True, np.diff(times[order]) > 0.0)
+    return SampledTurns(times[order][first], values[order][first], complete)
 
 
 def margin(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array]:
@@ -71,7 +145,7 @@ def margin(errors: Array, even: Mask) -> Callable[[Array, Array, Indices], Array
 
     def beat(b: Array, c: Array, target: Indices) -> Array:
         higher, of = np.maximum(b, c), target % n
-        error, size = GOOD_ENOUGH * errors[of], np.maximum(np.abs(b), np.abs(c))
+        error, size = GOOD_ENOUGH * errors[of], np.abs(higher)
         squared = error * error + 2.0 * error * np.sqrt(size)
         return np.asarray(higher + np.where(even[of], squared, error) + tolerances.SUM_ROUNDING * size)
 

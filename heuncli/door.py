@@ -4,7 +4,8 @@
     study = heuncli.solve("engine.yaml", n="1500 rpm")
 
 `read` and `solve_spec` are what the command line uses; `solve`, `solve_cases` and `validate` put the arguments of
-Python in front of them. Nothing is printed. A scene may be solved in any thread.
+Python in front of them, and hand over what in_python/ makes of the study; of that the command line loads nothing.
+Nothing is printed. A scene may be solved in any thread.
 """
 
 from __future__ import annotations
@@ -13,11 +14,8 @@ import math
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import TYPE_CHECKING
 
-from heuncli.door.asked_run import AskedRun
-from heuncli.door.given import SpecGiven, settings_of, source_of
-from heuncli.door.solved import Solved
-from heuncli.door.warned import warn
 from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
 from heuncli.nearest import nearest
@@ -27,11 +25,15 @@ from heuncli.spec.load import Given, load, load_with_cases
 from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import SourceFile
-from heuncli.study.model.error_places import placed
+from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve as solve_study
 from heuncli.telling.asked_values import choice, positive, tolerance
 from heuncli.telling.selection import Only, only, selected
+
+if TYPE_CHECKING:
+    from heuncli.in_python.given import SpecGiven
+    from heuncli.in_python.solved import Solved
 
 
 def read(
@@ -47,10 +49,9 @@ def read(
     return load(path, text, given, checking=False, case=case), {}
 
 
-def solve_spec(spec: Spec, options: Options) -> Solved:
+def solve_spec(spec: Spec, options: Options) -> Study:
     """A scene that was read, solved. Raises SpecError, LimitError, SolveError with places in the spec."""
-    with placed(spec):
-        return Solved(AskedRun(solve_study(spec, options)))
+    return solve_study(spec, options)
 
 
 def solve(
@@ -86,6 +87,8 @@ def solve(
     Raises SpecError for a spec that is none, UsageError for arguments, SolveError for what cannot be solved, LimitError
     where a limit is reached: all are HeunError, whose `problems` have code, message, hint and place. Warns HeunWarning.
     """
+    from heuncli.in_python.given import settings_of, source_of
+
     name, source = source_of(spec, text)
     _require_no_all(case)
     options = _options(tolerance, method, step, least_norm, reduce, axes)
@@ -118,6 +121,8 @@ def solve_cases(
 
     time_limit [s]: of each case. Raises UsageError where the spec has no load cases.
     """
+    from heuncli.in_python.given import settings_of, source_of
+
     name, source = source_of(spec, text)
     options = _options(tolerance, method, step, least_norm, reduce, axes)
     options = replace(options, time_limit=_limit(time_limit))
@@ -135,6 +140,8 @@ def validate(spec: SpecGiven | None = None, *, text: str | None = None) -> tuple
 
     spec, text: as of `solve`. Raises SpecError with every problem of the spec, in the order of the lines.
     """
+    from heuncli.in_python.given import source_of
+
     name, source = source_of(spec, text)
     scene, cases = load_with_cases(name, (), text=source)
     return tuple(dict.fromkeys(problem for one in (scene, *cases.values()) for problem in one.warnings))
@@ -144,11 +151,12 @@ def _answered(
     scene: Spec, options: Options, wanted: Only | None, by_cause: bool, at: float | Sequence[float] | None
 ) -> Solved:
     """A scene solved by options of Python, and its warnings told."""
+    from heuncli.in_python.solved import told
+
     default = frozenset(REPORTS) if scene.report is None else frozenset(scene.report)
     what = selected(wanted, scene, default, by_cause=by_cause)
     study = solve_spec(scene, replace(options, wanted=what.reports, entries=what.entries))
-    warn(study.warnings)
-    return study if at is None else study.at(at)
+    return told(study, at)
 
 
 def _options(

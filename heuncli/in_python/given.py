@@ -6,7 +6,6 @@ is refused by the place at which it stands. There are no lines: places are paths
 
 from __future__ import annotations
 
-import json
 import math
 import os
 from collections.abc import Iterator, Mapping
@@ -58,6 +57,8 @@ def _unclear(message: str, hint: str) -> UsageError:
 
 def source_in(spec: Mapping[str, object]) -> SourceFile:
     """A mapping as what a file holds. Raises SpecError for what cannot stand in one."""
+    import json  # 2 ms that files do not need
+
     values: dict[Path_, Mark] = {}
     data = _plain(spec, (), values, MAPPING)
     return SourceFile(MAPPING, digest(json.dumps(data).encode()), data, values, dict(values))

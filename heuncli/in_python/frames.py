@@ -11,8 +11,8 @@ from heuncli.errors import Problem, UsageError
 if TYPE_CHECKING:
     import pandas as pd
 
-    from heuncli.door.asked_run import AskedRun
-    from heuncli.door.signals import Signal
+    from heuncli.in_python.asked_run import AskedRun
+    from heuncli.in_python.signals import Signal
 
 INSTALL = 'pip install "heuncli[pandas]"; study[PATH].values needs NumPy alone'
 

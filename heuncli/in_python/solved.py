@@ -10,7 +10,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
-from heuncli.door.asked_run import AskedRun, distinct
+from heuncli.in_python.asked_run import AskedRun, distinct
+from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
 from heuncli.spec.models import Spec
 from heuncli.study.ask.study import Study
@@ -20,9 +21,11 @@ if TYPE_CHECKING:
 
     import pandas as pd
 
-    from heuncli.door.diagrams import Diagram
-    from heuncli.door.measured import Number
-    from heuncli.door.signals import Signal
+    from heuncli.collectives.counted import Collective
+    from heuncli.in_python.diagrams import Diagram
+    from heuncli.in_python.measured import Number
+    from heuncli.in_python.signals import Signal
+    from heuncli.load_cases.model import LoadCases
 
 
 class Solved(Mapping[str, "Signal"]):
@@ -42,7 +45,7 @@ class Solved(Mapping[str, "Signal"]):
 
     def __getitem__(self, path: str) -> Signal:
         """The numbers at a path, such as "joints.main.force.z". Raises UnknownPath."""
-        from heuncli.door.signals import signal_at
+        from heuncli.in_python.signals import signal_at
 
         if path not in self._signals:
             self._signals[path] = signal_at(self._run, path)
@@ -62,7 +65,7 @@ class Solved(Mapping[str, "Signal"]):
 
     def paths(self, under: str = "") -> list[str]:
         """The paths of all numbers, or of those under the words with which a path begins: "joints.main"."""
-        from heuncli.door.signals import paths_of
+        from heuncli.in_python.signals import paths_of
 
         return [path for path in paths_of(self.results) if not under or f"{path}.".startswith(f"{under}.")]
 
@@ -134,6 +137,42 @@ class Solved(Mapping[str, "Signal"]):
         """
         return Solved(self._run.told_at(distinct(times)[1]))
 
+    def collective(
+        self,
+        path: str,
+        *,
+        slopes: float | Sequence[float] = (),
+        cycles: float | None = None,
+        bins: int = 10,
+        repeat: int = 1,
+        closed: bool = False,
+    ) -> Collective:
+        """The load collective of a number over the motion, of a vector of its magnitude, as `--collective` counts it.
+
+        slopes: of Wöhler lines, each with its damage-equivalent range in `equivalents`, of so many cycles (None: of one
+        each time the motion is run through); bins: classes of ranges and means; repeat: how often the motion is run
+        through; closed: for ever. Ranges and levels in SI. Raises HeunError for what has no collective.
+        """
+        from heuncli.telling.collectives import collective
+
+        of = (float(slopes),) if isinstance(slopes, int | float) else tuple(slopes)
+        with self._run.asking():
+            return collective(self.study, path, slopes=of, cycles=cycles, bins=bins, repeat=repeat, closed=closed)
+
+    def load_cases(self, body: str, at: float | str) -> LoadCases:
+        """The self-balanced load cases of a body, as `heun export loads` writes them, in SI and in the body's axes.
+
+        at: instants, as `--at` of that command takes them: 0.31, "first,last", "peak:joints.main.force,impulse:0".
+        Raises HeunError for instants that are none, and for loads that are open.
+        """
+        from heuncli.load_cases.asked import parse
+        from heuncli.load_cases.gathered import gathered
+        from heuncli.telling.asked_values import choice
+
+        choice("load_cases", body, list(self.spec.bodies))
+        with self._run.asking():
+            return gathered(self.study, body, parse(str(at)))
+
     # -- other forms
 
     def to_json(self) -> str:
@@ -159,7 +198,7 @@ class Solved(Mapping[str, "Signal"]):
 
         units: "kN,mm,deg,rpm"; only: reports or entries, as of `solve`. Raises UsageError.
         """
-        from heuncli.door.told import text_of
+        from heuncli.in_python.told import text_of
 
         with self._run.asking():
             return text_of(self.study, self._run.instants, units, only)
@@ -171,7 +210,7 @@ class Solved(Mapping[str, "Signal"]):
         they stand in `frame.attrs["units"]`, and errors in `frame.attrs["errors"]`, too. What is open, or beyond the
         horizon, is nan. Raises UsageError where pandas is not installed, or a path has no instants.
         """
-        from heuncli.door.frames import frame_of
+        from heuncli.in_python.frames import frame_of
 
         return frame_of(self._run, [self[path] for path in paths or self.paths()], units, named=bool(paths))
 
@@ -180,14 +219,14 @@ class Solved(Mapping[str, "Signal"]):
 
         units: "kN,mm". Raises HeunError for what cannot be drawn.
         """
-        from heuncli.door.diagrams import diagram_of
+        from heuncli.in_python.diagrams import diagram_of
 
         with self._run.asking():
             return diagram_of(self.study, paths, over, units)
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """The results into a file, by its ending: .json or .csv. Raises UsageError, OSError."""
-        from heuncli.door.told import write_results
+        from heuncli.in_python.told import write_results
 
         write_results(file, {".json": self.to_json, ".csv": self.to_csv})
 
@@ -205,7 +244,7 @@ class Solved(Mapping[str, "Signal"]):
 
     def _repr_html_(self) -> str:
         """The tables as a part of a page: what a notebook shows."""
-        from heuncli.door.told import fragment_of
+        from heuncli.in_python.told import fragment_of
 
         with self._run.asking():
             return fragment_of(self.study, self._run.instants)
@@ -218,3 +257,11 @@ class Solved(Mapping[str, "Signal"]):
 
     def __reduce__(self) -> NoReturn:
         raise TypeError("a solved scene is not pickled: send to_json(), or the spec, and solve it there")
+
+
+def told(study: Study, at: float | Sequence[float] | None) -> Solved:
+    """A scene that was just solved, at its own instants or at others; its warnings are told."""
+    run = AskedRun(study)
+    warn(run.warnings())
+    solved = Solved(run)
+    return solved if at is None else solved.at(at)

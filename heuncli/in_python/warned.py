@@ -6,21 +6,11 @@ import sys
 import warnings
 from collections.abc import Iterable
 
-from heuncli.results import Results
-from heuncli.spec.models import Spec
-
 PASSED = (__name__.partition(".")[0], "contextlib")  # frames that are heun's own
 
 
 class HeunWarning(UserWarning):
     """What a run is warned of: `warnings.simplefilter("error", heuncli.HeunWarning)` makes errors of it."""
-
-
-def warnings_of(spec: Spec, results: Results | None, later: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Those of reading, with their places, and those of solving and of what came later that are not among them."""
-    known = {problem.message for problem in spec.warnings}
-    solved = [text for text in results.warnings if text not in known] if results else []
-    return [str(problem) for problem in spec.warnings], solved + list(later)
 
 
 def warn(texts: Iterable[str]) -> None:

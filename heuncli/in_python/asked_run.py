@@ -5,22 +5,23 @@ Impure: keeps answers.
 
 from __future__ import annotations
 
+from _thread import RLock  # that of threading, which takes 0.5 ms
 from collections.abc import Iterator
 from contextlib import contextmanager
-from threading import RLock
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.door.warned import warn, warnings_of
 from heuncli.errors import SpecError
+from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.telling.asked_values import within_run
+from heuncli.telling.warned import warnings_of
 
 if TYPE_CHECKING:
-    from heuncli.door.measured import Number
+    from heuncli.in_python.measured import Number
 
 
 class UnknownPath(SpecError, KeyError):
@@ -66,7 +67,7 @@ class AskedRun:
 
     def measure(self, words: str) -> Number:
         """The number that the words of a measure mean. Raises UsageError, SpecError [unknown-path]."""
-        from heuncli.door.measured import measured
+        from heuncli.in_python.measured import measured
 
         with self.asking():
             return measured(self.study, words)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
-from heuncli.door.asked_run import AskedRun, UnknownPath, distinct
 from heuncli.errors import Problem, SpecError, UsageError
+from heuncli.in_python.asked_run import AskedRun, UnknownPath, distinct
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.series import component_names
 from heuncli.results import Array, Mask, Results
@@ -21,7 +21,7 @@ from heuncli.study.ask.measure import MeasureRequest, Peak, lost_from
 from heuncli.variants.stated import error_of, unit_of
 
 if TYPE_CHECKING:
-    from heuncli.door.measured import Number
+    from heuncli.in_python.measured import Number
 
 LISTS = (BLOWS, "certain_sums")  # blocks of the results that are lists of blocks
 SUMS = "certain_sums"

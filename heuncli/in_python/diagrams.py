@@ -6,11 +6,11 @@ import os
 from collections.abc import Sequence
 from pathlib import Path
 
-from heuncli.door.told import units_of
 from heuncli.drawing.as_file import as_file, form_of
 from heuncli.drawing.layout import laid_out
 from heuncli.drawing.picture import Picture, svg
 from heuncli.errors import Problem, UsageError
+from heuncli.in_python.told import units_of
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.histories import history
 from heuncli.study.ask.measure import MeasureRequest
