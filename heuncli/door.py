@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.kinetostatics.joint_axes import JOINT_AXES
+from heuncli.memory_left import room
 from heuncli.nearest import nearest
 from heuncli.records import replace
 from heuncli.results_schema import REPORTS
@@ -26,6 +27,7 @@ from heuncli.spec.models import Spec
 from heuncli.spec.names import ALL_CASES
 from heuncli.spec.source import SourceFile
 from heuncli.study.ask.study import Study
+from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve as solve_study
 from heuncli.telling.asked_values import choice, positive, tolerance
@@ -155,6 +157,7 @@ def _answered(
 
     default = frozenset(REPORTS) if scene.report is None else frozenset(scene.report)
     what = selected(wanted, scene, default, by_cause=by_cause)
+    options = replace(options, room=Room(*room("table")))
     study = solve_spec(scene, replace(options, wanted=what.reports, entries=what.entries))
     return told(study, at)
 

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import memory
+from heuncli import memory_left
 from heuncli.commands.sweep import workers
 from heuncli.variants.asking import Asker
 from tests.shared.command import Done, Heun
@@ -257,7 +257,7 @@ def test_a_terminal_shows_the_rate_and_what_is_left(scene: Path) -> None:
 def test_a_variant_that_would_not_fit_into_memory_is_refused_alone(
     heun: Heun, scene: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(memory, "_left", lambda: iter([2e6]))
+    monkeypatch.setattr(memory_left, "_left", lambda: iter([2e6]))
     done = sweep(heun, "analysis.samples=3,100001", "--jobs", "1")
     assert [row["code"] for row in rows(done)] == ["", "too-much-memory"]
 

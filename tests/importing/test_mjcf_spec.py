@@ -116,6 +116,10 @@ LEFT = {  # what is left out, and what the warning says of it
     "soft": (
         scene(rest='<equality><joint name="s" joint1="elbow" solref="0.5 1"/></equality>'), "softness.*equality s",
     ),
+    "twice": (
+        scene(rest='<equality><joint joint1="elbow"/><joint name="s" joint1="elbow" polycoef="1 0 0 0 0"/></equality>'),
+        "equality 's': elbow follows twice",
+    ),
     "turned weld": (
         scene('<body name="lid" pos="0 1 0"><freejoint/><geom size=".1"/></body>',
               '<equality><weld name="w" body1="lid" body2="arm" relpose="0 0 0 .7 .7 0 0"/></equality>'),

@@ -38,7 +38,10 @@ def agree(robot: ImportedRobot, found: Results, wanted: Answer, asked: Asked) ->
         near(body["rotation"][0], link.rotation, 1.0, DIGITS)
         near(body["velocity"][0], link.velocity, speed, DIGITS)
     agree_in_joints(robot, found, wanted, asked)
-    near(sum(body.mass or 0.0 for body in robot.machine.bodies), wanted.mass, wanted.mass, DIGITS)
+    masses = {body.name: body.mass or 0.0 for body in robot.machine.bodies}
+    near(sum(masses.values()), wanted.mass, wanted.mass, DIGITS)
+    moments = sum((mass * found.bodies[name]["center"][0] for name, mass in masses.items()), np.zeros(3))
+    near(moments / wanted.mass, wanted.center, reach, DIGITS)
     momentum = wanted.mass * speed
     near(found.momentum["total"][0], wanted.momentum, momentum, DIGITS)
     turned = found.momentum["moment_orbital"][0] + found.momentum["moment_spin"][0]

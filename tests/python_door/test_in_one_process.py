@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import heuncli
+from heuncli import memory_left
 from heuncli.study.solve import history
 from tests.shared.command import SPEC_TEXTS
 from tests.shared.folders import SPECS
@@ -76,6 +77,13 @@ def test_a_time_limit_holds_in_every_thread() -> None:
     with ThreadPoolExecutor(1) as pool:
         assert pool.submit(limited).result() < 20.0
     assert handlers == [signal.getsignal(signal.SIGINT), signal.getsignal(signal.SIGALRM)]
+
+
+def test_what_would_not_fit_into_memory_is_refused_before_it_is_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(memory_left, "_left", lambda: iter([2e7]))
+    with pytest.raises(heuncli.LimitError, match="may be taken") as caught:
+        heuncli.solve(text=SPEC_TEXTS["swinging"], set={"analysis.samples": 100_001})
+    assert caught.value.problems[0].code == "too-much-memory" and "would fit" in caught.value.problems[0].hint
 
 
 def test_an_interrupt_leaves_nothing_broken(monkeypatch: pytest.MonkeyPatch) -> None:

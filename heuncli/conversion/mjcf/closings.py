@@ -18,9 +18,9 @@ import numpy as np
 from heuncli.conversion.attitudes import after
 from heuncli.conversion.described import DescribedEntry
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.frames import Frames, rotation
-from heuncli.conversion.mjcf.points import Points
-from heuncli.conversion.mjcf.tree import GROUND, Tree
+from heuncli.conversion.mjcf.frames import BodyFrames, rotation
+from heuncli.conversion.mjcf.points import PointsMade
+from heuncli.conversion.mjcf.tree import GROUND, JointTree
 from heuncli.conversion.spec_text import pointed
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
@@ -51,7 +51,7 @@ class Closings(NamedTuple):
     told: tuple[str, ...]
 
 
-class End(NamedTuple):
+class ClosingEnd(NamedTuple):
     """An end of an equality: the body of MuJoCo; place [m] and attitude at the zero, in the body of the spec."""
 
     body: int
@@ -69,7 +69,9 @@ def left_out(c: Compiled, kind: str, number: int, why: str, hint: str) -> Proble
 class Closer:
     """Makes the closings of one model; entries are added as they are found."""
 
-    def __init__(self, c: Compiled, frames: Frames, tree: Tree, points: Points, name: Callable[[str], str]) -> None:
+    def __init__(
+        self, c: Compiled, frames: BodyFrames, tree: JointTree, points: PointsMade, name: Callable[[str], str]
+    ) -> None:
         self.c, self.frames, self.tree, self.points, self.name = c, frames, tree, points, name
         self.joints: list[DescribedEntry] = []
         self.couplings: list[Coupling] = []
@@ -102,13 +104,13 @@ class Closer:
         """Tell that an equality is left out."""
         self.left_out.append(left_out(self.c, "equality", number, why, hint))
 
-    def add(self, number: int, kind: str, ends: tuple[End, End], **keys: Any) -> None:
+    def add(self, number: int, kind: str, ends: tuple[ClosingEnd, ClosingEnd], **keys: Any) -> None:
         """Add a joint between two ends."""
         wanted = self.c.name("equality", number) or f"{kind}_{number + 1}"
         self.carried.add(number)
         self.joint(wanted, self.c.told("equality", number), kind, ends, **keys)
 
-    def joint(self, wanted: str, told: str, kind: str, ends: tuple[End, End], **keys: Any) -> None:
+    def joint(self, wanted: str, told: str, kind: str, ends: tuple[ClosingEnd, ClosingEnd], **keys: Any) -> None:
         bodies = [self.tree.names[self.frames.owners[end.body]] for end in ends]
         if bodies[0] == bodies[1]:
             self.told.append(f"{told} holds {bodies[0]} to itself, and is left out")
@@ -119,26 +121,26 @@ class Closer:
             ways.reverse()
         self.joints.append(DescribedEntry(name, {"type": kind, "from": ways[0], "to": ways[1], **keys}, told))
 
-    def ends(self, number: int, points: tuple[Any, Any]) -> tuple[End, End]:
+    def ends(self, number: int, points: tuple[Any, Any]) -> tuple[ClosingEnd, ClosingEnd]:
         """The ends of an equality of two bodies with these points, or of two sites."""
         c = self.c
         ids = int(c.model.eq_obj1id[number]), int(c.model.eq_obj2id[number])
         if int(c.model.eq_objtype[number]) == int(c.mujoco.mjtObj.mjOBJ_SITE):
             return self.site(ids[0]), self.site(ids[1])
         one, other = (
-            End(body, self.frames.place(body, point), self.frames.attitudes[body])
+            ClosingEnd(body, self.frames.place(body, point), self.frames.attitudes[body])
             for body, point in zip(ids, points, strict=True)
         )
         return one, other
 
-    def site(self, site: int) -> End:
+    def site(self, site: int) -> ClosingEnd:
         """The end at a site."""
         model = self.c.model
         body = int(model.site_bodyid[site])
         attitude = after(self.frames.attitudes[body], rotation(model.site_quat[site]))
-        return End(body, self.frames.place(body, model.site_pos[site]), attitude)
+        return ClosingEnd(body, self.frames.place(body, model.site_pos[site]), attitude)
 
-    def point(self, end: End, wanted: str) -> str:
+    def point(self, end: ClosingEnd, wanted: str) -> str:
         """A new point of a body of the spec at an end."""
         return self.points.add(self.tree.names[self.frames.owners[end.body]], wanted, end.place)
 

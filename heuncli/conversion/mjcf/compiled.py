@@ -9,13 +9,15 @@ into the working folder.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator
 from typing import Any
 
-from heuncli.conversion.mjcf.named_files import NamedFiles
+from heuncli.conversion.mjcf.named_files import ModelFiles
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.named_tuples import NamedTuple
 
+OLDEST = (3, 3)  # whose specs take included models as texts
 INSTALL = 'pip install "heuncli[mujoco]"'
 LINE = re.compile(r"\bline(?: number)?[ =](\d+)", re.IGNORECASE)
 KINDS = {  # what a part is called: in MuJoCo's arrays, in a MjSpec, in its list of kinds of objects
@@ -66,20 +68,24 @@ class Compiled(NamedTuple):
         return bool(self.model.opt.disableflags & bits)
 
 
-def compiled(content: bytes, file: str, named: NamedFiles) -> Compiled:
+def compiled(content: bytes, file: str, named: ModelFiles) -> Compiled:
     """The model of a text. file: what messages call it. Raises SpecError: no mujoco, or what MuJoCo finds wrong."""
     mujoco = _package(file)
     warned: list[str] = []
     mujoco.set_mju_user_warning(lambda text: warned.append(str(text)))
     try:
-        spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
-        spec.modelfiledir = named.folder
-        model = spec.compile()
+        with warnings.catch_warnings(record=True) as seen:
+            warnings.simplefilter("always")
+            spec = mujoco.MjSpec.from_string(_text(content, file), include=dict(named.included))
+            spec.modelfiledir = named.folder
+            model = spec.compile()
     except (MemoryError, SpecError):
         raise
     except Exception as error:  # ValueError mostly; of the bindings also their own kinds
         raise SpecError(_problem(str(error), file)) from None
-    return Compiled(mujoco, model, file, _lines(spec), tuple(warned))
+    warned += [str(warning.message) for warning in seen]
+    lines = {} if named.included else _lines(spec)  # of several files MuJoCo does not say which
+    return Compiled(mujoco, model, file, lines, tuple(dict.fromkeys(warned)))
 
 
 def _package(file: str) -> Any:
@@ -88,8 +94,9 @@ def _package(file: str) -> Any:
     except ImportError:
         message = f"{file} is a model of MuJoCo's, which the package mujoco reads; it is not installed"
         raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} installs it")) from None
-    if not hasattr(mujoco, "MjSpec"):
-        message = f"{file}: the package mujoco is of version {mujoco.__version__}; 3.2 is the oldest that is understood"
+    if tuple(map(int, str(mujoco.__version__).split(".")[:2])) < OLDEST:
+        oldest = ".".join(map(str, OLDEST))
+        message = f"{file}: the package mujoco is of version {mujoco.__version__}; the oldest understood is {oldest}"
         raise SpecError(Problem("missing-extra", message, hint=f"{INSTALL} --upgrade"))
     return mujoco
 
@@ -107,14 +114,9 @@ def _problem(text: str, file: str) -> Problem:
     found = LINE.search(text)
     said = " ".join(text.split()).removeprefix("Error: ").removeprefix("XML Error: ").removeprefix("Error: ")
     said = re.sub(r"Element name '', id \d+, |,? ?line \d+$", "", said).rstrip(", ")
-    location = SourceLocation(file, int(found[1]), 1) if found and int(found[1]) > 0 else None
-    where = "" if location else f"{file}: "
-    return Problem(
-        "import-mjcf",
-        f"{where}MuJoCo does not compile it: {said}",
-        location,
-        hint="it says so of the file by itself, too",
-    )
+    line = max(int(found[1]), 1) if found else 1
+    message = f"MuJoCo does not compile it: {said}"
+    return Problem("import-mjcf", message, SourceLocation(file, line, 1), "MuJoCo says so of the file by itself, too")
 
 
 def _lines(spec: Any) -> dict[str, dict[int, int]]:
@@ -124,5 +126,5 @@ def _lines(spec: Any) -> dict[str, dict[int, int]]:
 def _lines_of(parts: Any) -> Iterator[tuple[int, int]]:
     for part in parts:
         found = LINE.search(str(getattr(part, "info", "")))
-        if found:
+        if found and hasattr(part, "id"):  # which versions of 3.3 do not all have: no line is told
             yield int(part.id), int(found[1])

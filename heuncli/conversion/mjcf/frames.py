@@ -22,7 +22,7 @@ LEAST_MASS = 1e-15  # MuJoCo's own mjMINVAL: what moves has more
 NOWHERE: Vec = (0.0, 0.0, 0.0)
 
 
-class Frames(NamedTuple):
+class BodyFrames(NamedTuple):
     """Of each of MuJoCo's bodies: the body that it is part of (0: the ground), its attitude, its origin there."""
 
     owners: tuple[int, ...]
@@ -42,7 +42,7 @@ class Frames(NamedTuple):
         return [body for body, its in enumerate(self.owners) if its == owner]
 
 
-def frames_of(model: Any) -> Frames:
+def frames_of(model: Any) -> BodyFrames:
     """The frames of a compiled model. Parents stand before their children in it."""
     owners, attitudes, origins = [0], [IDENTITY], [NOWHERE]
     for body in range(1, int(model.nbody)):
@@ -58,7 +58,7 @@ def frames_of(model: Any) -> Frames:
             owners.append(body)
             origins.append(NOWHERE)
         attitudes.append(attitude)
-    return Frames(tuple(owners), tuple(attitudes), tuple(origins))
+    return BodyFrames(tuple(owners), tuple(attitudes), tuple(origins))
 
 
 def rotation(quaternion: Any) -> Matrix:
@@ -73,7 +73,7 @@ def vec(values: Any) -> Vec:
     return x, y, z
 
 
-class MassProperties(NamedTuple):
+class PartMass(NamedTuple):
     """Mass [kg], centre of mass [m], inertia about it [kg m^2]; in the body's axes of a spec."""
 
     mass: float
@@ -81,7 +81,7 @@ class MassProperties(NamedTuple):
     inertia: Matrix
 
 
-def mass_properties(model: Any, frames: Frames, owner: int) -> MassProperties:
+def mass_properties(model: Any, frames: BodyFrames, owner: int) -> PartMass:
     """Of a body with all that is part of it.
 
     I = sum of I_k + m_k (|d_k|^2 1 - d_k d_k^T), d_k from the common centre to that of part k.
@@ -98,13 +98,13 @@ def mass_properties(model: Any, frames: Frames, owner: int) -> MassProperties:
         for i in range(3):
             for j in range(3):
                 total[i][j] += part.inertia[i][j] + part.mass * ((square if i == j else 0.0) - d[i] * d[j])
-    return MassProperties(mass, (x, y, z), tuple(map(tuple, total)))  # type: ignore[arg-type]
+    return PartMass(mass, (x, y, z), tuple(map(tuple, total)))  # type: ignore[arg-type]
 
 
-def _own(model: Any, frames: Frames, body: int) -> MassProperties:
+def _own(model: Any, frames: BodyFrames, body: int) -> PartMass:
     """Of a body by itself: MuJoCo keeps principal moments, and the attitude of their axes in the body."""
     A1, A2, A3 = vec(model.body_inertia[body])
     R = after(frames.attitudes[body], rotation(model.body_iquat[body]))
     center = frames.place(body, model.body_ipos[body])
     principal: Matrix = ((A1, 0.0, 0.0), (0.0, A2, 0.0), (0.0, 0.0, A3))
-    return MassProperties(float(model.body_mass[body]), center, turned_tensor(R, principal))
+    return PartMass(float(model.body_mass[body]), center, turned_tensor(R, principal))

@@ -17,14 +17,14 @@ import numpy as np
 
 from heuncli.conversion.mjcf.closings import Closings
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.tree import COORDINATE, Tree
+from heuncli.conversion.mjcf.tree import COORDINATE, JointTree
 
 # Of a rate of 1, what is left of it beside all that follows from others: those that are well open are taken first, so
 # that none is held which another all but determines.
 OPEN = (0.1, 1e-3, 1e-6)
 
 
-def held(c: Compiled, tree: Tree, closings: Closings, q: Any) -> tuple[int, ...]:
+def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> tuple[int, ...]:
     """The numbers of the joints that are held, in MuJoCo's order."""
     slaves = {coupling.slave for coupling in closings.couplings}
     movable = [joint for joint, step in tree.of_joint.items() if step.kind in COORDINATE]

@@ -15,7 +15,7 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedParameter
 from heuncli.conversion.mjcf.closings import Coupling, left_out, moved
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.tree import COORDINATE, RATE, Step, Tree
+from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
 from heuncli.conversion.names import called
 from heuncli.conversion.spec_text import number_text, pointed
 from heuncli.conversion.told_moving import told_moving
@@ -25,7 +25,7 @@ from heuncli.named_tuples import NamedTuple
 HELD_HINT = "drives hold what moves by itself; of this coupling neither joint does"
 
 
-class Laws(NamedTuple):
+class JointLaws(NamedTuple):
     """What moves the joints. initial: start values of free joints by name; driven: numbers of those with a drive."""
 
     parameters: tuple[DescribedParameter, ...]
@@ -39,7 +39,7 @@ class Laws(NamedTuple):
 class _Making:
     """The laws of one model while they are made; laws: of the joints of MuJoCo's, in its coordinates."""
 
-    def __init__(self, c: Compiled, tree: Tree, q: Any, qd: Any, asked: ImportAsked) -> None:
+    def __init__(self, c: Compiled, tree: JointTree, q: Any, qd: Any, asked: ImportAsked) -> None:
         self.c, self.steps, self.q, self.qd, self.asked = c, tree.of_joint, q, qd, asked
         self.parameters: list[DescribedParameter] = []
         self.drives: list[DescribedEntry] = []
@@ -74,8 +74,9 @@ class _Making:
                 Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
             )
         argument = self.argument(coupling)
-        if argument is None:
-            why = f"{step.name} follows a joint that nothing holds"
+        if argument is None or coupling.slave in self.driven:
+            twice = "twice, by another equality, too"
+            why = f"{step.name} follows {'a joint that nothing holds' if argument is None else twice}"
             self.left_out.append(left_out(c, "equality", coupling.equality, why, HELD_HINT))
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
@@ -116,15 +117,21 @@ class _Making:
 
 
 def laws_of(
-    c: Compiled, tree: Tree, held: tuple[int, ...], couplings: tuple[Coupling, ...], q: Any, qd: Any, asked: ImportAsked
-) -> Laws:
+    c: Compiled,
+    tree: JointTree,
+    held: tuple[int, ...],
+    couplings: tuple[Coupling, ...],
+    q: Any,
+    qd: Any,
+    asked: ImportAsked,
+) -> JointLaws:
     """The parameters and drives: q, qd are MuJoCo's coordinates and rates at the start. Raises SpecError."""
     making = _Making(c, tree, q, qd, asked)
     for joint in held:
         making.hold(joint)
     for coupling in _in_order(couplings):
         making.follow(coupling)
-    return Laws(
+    return JointLaws(
         tuple(making.parameters),
         tuple(making.drives),
         making.initial,
@@ -139,7 +146,7 @@ def zero(c: Compiled, joint: int) -> float:
     return float(c.model.qpos0[c.model.jnt_qposadr[joint]])
 
 
-def value_text(step: Step, value: float) -> str:
+def value_text(step: TreeStep, value: float) -> str:
     """A coordinate with its unit; in degrees where that is a short number, as people write them."""
     if step.kind != "pin":
         return f"{number_text(value)} m"
@@ -165,7 +172,7 @@ def _less(law: str, value: float) -> str:
     return law if value == 0.0 else f"{law} {'-' if value > 0.0 else '+'} {pointed(abs(value))}"
 
 
-def _limits(c: Compiled, joint: int, step: Step) -> str:
+def _limits(c: Compiled, joint: int, step: TreeStep) -> str:
     """The joint of MuJoCo's, where the name is not its own; its range."""
     remarks = [called("joint", step.name, c.name("joint", joint) or step.name)]
     if c.model.jnt_limited[joint]:

@@ -15,16 +15,16 @@ from typing import Any
 from heuncli.conversion.described import DescribedEntry
 from heuncli.conversion.mjcf.closings import Closer, straight
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.frames import Frames, vec
+from heuncli.conversion.mjcf.frames import BodyFrames, vec
 from heuncli.conversion.mjcf.laws import zero
-from heuncli.conversion.mjcf.points import Points
-from heuncli.conversion.mjcf.tree import COORDINATE, Step, Tree
+from heuncli.conversion.mjcf.points import PointsMade
+from heuncli.conversion.mjcf.tree import COORDINATE, JointTree, TreeStep
 from heuncli.conversion.spec_text import number_text
 
 Name = Callable[[str], str]
 
 
-def joint_loads(c: Compiled, tree: Tree, name: Name) -> Iterator[DescribedEntry]:
+def joint_loads(c: Compiled, tree: JointTree, name: Name) -> Iterator[DescribedEntry]:
     """Springs and dampers in the joints of the tree."""
     springs, dampers = not c.switched_off("PASSIVE", "SPRING"), not c.switched_off("PASSIVE", "DAMPER")
     for step in tree.steps:
@@ -40,7 +40,7 @@ def joint_loads(c: Compiled, tree: Tree, name: Name) -> Iterator[DescribedEntry]
             yield DescribedEntry(name(f"damping_{step.name}"), keys)
 
 
-def _spring(step: Step, stiffness: float, free: float, name: Name) -> DescribedEntry:
+def _spring(step: TreeStep, stiffness: float, free: float, name: Name) -> DescribedEntry:
     if step.kind == "pin":
         keys = {"type": "turn_spring", "joint": step.name, "stiffness": stiffness, **({"angle": free} if free else {})}
         return DescribedEntry(name(f"spring_{step.name}"), keys)
@@ -79,7 +79,7 @@ def tendon_springs(c: Compiled, closer: Closer, name: Name) -> Iterator[Describe
 
 
 def weightless(
-    c: Compiled, frames: Frames, tree: Tree, points: Points, gravity: Any, name: Name
+    c: Compiled, frames: BodyFrames, tree: JointTree, points: PointsMade, gravity: Any, name: Name
 ) -> Iterator[DescribedEntry]:
     """What carries the weight of bodies that MuJoCo takes it from."""
     for body in range(1, int(c.model.nbody)):
@@ -93,7 +93,7 @@ def weightless(
         yield DescribedEntry(name(f"gravcomp_{its}"), {"type": "force", "on": center, "vector": vector}, remark)
 
 
-def stops(c: Compiled, tree: Tree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:
+def stops(c: Compiled, tree: JointTree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:
     """The limits of the joints that no drive moves: where the coordinate comes to one, a blow without rebound."""
     if c.switched_off("LIMIT", "CONSTRAINT"):
         return

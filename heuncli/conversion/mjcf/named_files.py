@@ -31,14 +31,14 @@ COUNTS = {  # elements, and the attributes whose numbers count what is made of t
 MANY = "MuJoCo makes them all before anything is said of them"
 
 
-class NamedFiles(NamedTuple):
+class ModelFiles(NamedTuple):
     """folder: where names of files are looked up; included: texts of models by their names."""
 
     folder: str
     included: dict[str, bytes]
 
 
-def named_files(root: XmlElement, file: str) -> NamedFiles:
+def named_files(root: XmlElement, file: str) -> ModelFiles:
     """The files that a model names. Raises SpecError: no regular file, too large, no XML, a count too large."""
     folder = Path() if file == STANDARD_INPUT else Path(file).parent
     included: dict[str, bytes] = {}
@@ -59,7 +59,7 @@ def named_files(root: XmlElement, file: str) -> NamedFiles:
                     raise _refused("too-large", inner, its_file, f"more than {MOST_FILES:,} files", MANY)
                 included[name] = found.read_bytes()
                 waiting.append((read_elements(included[name], str(found)), str(found), found.parent))
-    return NamedFiles(str(folder.absolute()), included)
+    return ModelFiles(str(folder.absolute()), included)
 
 
 def _all(root: XmlElement) -> Iterator[tuple[XmlElement, int]]:

@@ -24,7 +24,7 @@ DEFAULT_SOLIMP = (0.9, 0.95, 0.001, 0.5, 2.0)
 MOST_GROUPS = 3000  # of geoms that are looked at in pairs
 
 
-class Row(NamedTuple):
+class WithoutCounterpart(NamedTuple):
     """One thing without counterpart. kind: of the parts that have it; has: their numbers; hint: what there is."""
 
     kind: str
@@ -43,7 +43,7 @@ def without_counterpart(c: Compiled, rods: frozenset[int], limits: bool) -> Iter
     yield from _whole(c)
 
 
-def _problem(c: Compiled, row: Row, numbers: Iterable[int]) -> Iterator[Problem]:
+def _problem(c: Compiled, row: WithoutCounterpart, numbers: Iterable[int]) -> Iterator[Problem]:
     found = sorted(set(numbers))
     if not found:
         return
@@ -176,45 +176,47 @@ def _excluded(c: Compiled, weld: Any, bodies: Any) -> Any:
 
 
 ROWS = (
-    Row(
+    WithoutCounterpart(
         "joint", lambda c: _joints_of_dofs(c, c.model.dof_armature),
         "the inertia of a motor (armature) is left out: at rest it adds nothing",
         "a motion takes armature * acceleration more than its drive tells",
     ),
-    Row(
+    WithoutCounterpart(
         "joint", lambda c: [] if c.switched_off("FRICTIONLOSS") else _joints_of_dofs(c, c.model.dof_frictionloss),
         "dry friction (frictionloss) is left out",
         "a force of type friction has it, with the speed at which it is full",
     ),
-    Row(
+    WithoutCounterpart(
         "joint", lambda c: _where(c, c.model.jnt_stiffness, _of_type(c, "mjJNT_BALL", "mjJNT_FREE")),
         "springs in a ball or free joint are not in a spec", "springs between points have their effect",
     ),
-    Row(
+    WithoutCounterpart(
         "joint", _free_damped,
         "damping of a free joint is not in a spec", "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
-    Row(
+    WithoutCounterpart(
         "joint", _curved,
         "springs and dampers that are not linear: their linear part alone is in the spec",
         "a torque has any law in the joint's angle and rate",
     ),
-    Row(
+    WithoutCounterpart(
         "actuator", _actuators,
         "actuators with dynamics, or with a feedback of their own, are left out",
         "joints are held by drives, which tell the torque that is needed",
     ),
-    Row("equality", _soft, "softness of equalities (solref, solimp) is not in a spec, where they hold",
+    WithoutCounterpart("equality", _soft, "softness of equalities (solref, solimp) is not in a spec, where they hold",
         "an elastic coupling is a spring or turn_spring"),
-    Row("flex", lambda c: range(c.count("flex")), "flexible bodies are not in a spec", "a spec has rigid bodies"),
-    Row(
+    WithoutCounterpart(
+        "flex", lambda c: range(c.count("flex")), "flexible bodies are not in a spec", "a spec has rigid bodies",
+    ),
+    WithoutCounterpart(
         "body", lambda c: [int(k) for k in np.flatnonzero(np.asarray(c.model.body_mocapid) >= 0)],
         "bodies that a program moves (mocap) stand still in the spec", "move what they hold by a drive",
     ),
 )  # fmt: skip
-TENDONS = Row(
+TENDONS = WithoutCounterpart(
     "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
     "a given length, without limits, friction or armature; left out",
     "rods, springs and actuators run between points",
 )  # fmt: skip
-BALL_LIMITS = Row("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")
+BALL_LIMITS = WithoutCounterpart("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")

@@ -7,7 +7,7 @@ from heuncli.conversion.names import Namer
 from heuncli.spec.models import Vec
 
 
-class Points:
+class PointsMade:
     """Points by body, in the order in which they are added."""
 
     def __init__(self) -> None:

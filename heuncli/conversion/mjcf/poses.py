@@ -15,14 +15,14 @@ import numpy as np
 
 from heuncli.conversion.attitudes import shifted
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.frames import Frames, rotation, vec
-from heuncli.conversion.mjcf.tree import FREE, GROUND, Step, Tree
+from heuncli.conversion.mjcf.frames import BodyFrames, rotation, vec
+from heuncli.conversion.mjcf.tree import FREE, GROUND, JointTree, TreeStep
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import ZERO, Vec
 from heuncli.spec.turns import about
 
 
-class Pose(NamedTuple):
+class BodyPose(NamedTuple):
     """S: attitude against that at the zero; p: the origin [m]; sigma: angular velocity; v: velocity of the origin."""
 
     S: Any
@@ -31,10 +31,10 @@ class Pose(NamedTuple):
     v: Any
 
 
-AT_REST = Pose(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3))
+AT_REST = BodyPose(np.eye(3), np.zeros(3), np.zeros(3), np.zeros(3))
 
 
-def poses(c: Compiled, frames: Frames, tree: Tree, q: Any, qd: Any) -> dict[str, Pose]:
+def poses(c: Compiled, frames: BodyFrames, tree: JointTree, q: Any, qd: Any) -> dict[str, BodyPose]:
     """The pose of each body of the spec, by its name."""
     made = {GROUND: AT_REST}
     for step in tree.steps:
@@ -42,7 +42,7 @@ def poses(c: Compiled, frames: Frames, tree: Tree, q: Any, qd: Any) -> dict[str,
     return made
 
 
-def sides(c: Compiled, frames: Frames, step: Step) -> tuple[Vec, Vec]:
+def sides(c: Compiled, frames: BodyFrames, step: TreeStep) -> tuple[Vec, Vec]:
     """The place of a joint in the bodies before and behind it, axes along the world's at the zero [m].
 
     Bodies that stand for the same one of MuJoCo's have their origins in common.
@@ -55,7 +55,7 @@ def sides(c: Compiled, frames: Frames, step: Step) -> tuple[Vec, Vec]:
     return shifted(frames.place(int(model.body_parentid[body]), model.body_pos[body]), point), point
 
 
-def _next(c: Compiled, frames: Frames, step: Step, before: Pose, q: Any, qd: Any) -> Pose:
+def _next(c: Compiled, frames: BodyFrames, step: TreeStep, before: BodyPose, q: Any, qd: Any) -> BodyPose:
     model, R_C0 = c.model, np.array(frames.attitudes[step.body])
     before_point, point = (np.array(place) for place in sides(c, frames, step))
     S, sigma, slid, speed = before.S, before.sigma, np.zeros(3), np.zeros(3)
@@ -65,7 +65,7 @@ def _next(c: Compiled, frames: Frames, step: Step, before: Pose, q: Any, qd: Any
         moved = float(q[at]) - float(model.qpos0[at])
         if step.kind == FREE:
             S = np.array(rotation(q[at + 3 : at + 7])) @ R_C0.T
-            return Pose(
+            return BodyPose(
                 S, np.array(q[at : at + 3]), S @ R_C0 @ qd[rate_at + 3 : rate_at + 6], qd[rate_at : rate_at + 3]
             )
         if step.kind == "ball":
@@ -78,4 +78,4 @@ def _next(c: Compiled, frames: Frames, step: Step, before: Pose, q: Any, qd: Any
             slid, speed = S @ axis * moved, S @ axis * qd[rate_at] + np.cross(sigma, S @ axis * moved)
     p = before.p + before.S @ before_point + slid - S @ point
     v = before.v + np.cross(before.sigma, before.S @ before_point) + speed - np.cross(sigma, S @ point)
-    return Pose(S, p, sigma, v)
+    return BodyPose(S, p, sigma, v)

@@ -11,16 +11,16 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.conversion.mjcf.closings import Closer, Closings
 from heuncli.conversion.mjcf.compiled import Compiled, compiled
-from heuncli.conversion.mjcf.frames import Frames, frames_of, mass_properties, vec
+from heuncli.conversion.mjcf.frames import BodyFrames, frames_of, mass_properties, vec
 from heuncli.conversion.mjcf.holding import held
-from heuncli.conversion.mjcf.laws import Laws, laws_of
+from heuncli.conversion.mjcf.laws import JointLaws, laws_of
 from heuncli.conversion.mjcf.loads import joint_loads, stops, tendon_springs, weightless
 from heuncli.conversion.mjcf.named_files import named_files
 from heuncli.conversion.mjcf.no_counterpart import without_counterpart
-from heuncli.conversion.mjcf.points import Points
-from heuncli.conversion.mjcf.poses import Pose, poses, sides
-from heuncli.conversion.mjcf.starts import Start, starts_of
-from heuncli.conversion.mjcf.tree import CARRIER, FREE, GROUND, Step, Tree, tree_of
+from heuncli.conversion.mjcf.points import PointsMade
+from heuncli.conversion.mjcf.poses import BodyPose, poses, sides
+from heuncli.conversion.mjcf.starts import StartKeys, starts_of
+from heuncli.conversion.mjcf.tree import CARRIER, FREE, GROUND, JointTree, TreeStep, tree_of
 from heuncli.conversion.names import Namer, called
 from heuncli.conversion.xml_elements import XmlElement
 from heuncli.errors import Problem, SourceLocation, SpecError
@@ -50,9 +50,9 @@ class _Said:
 
     def __init__(self, c: Compiled, asked: ImportAsked) -> None:
         self.c, self.asked = c, asked
-        self.frames: Frames = frames_of(c.model)
-        self.tree: Tree = tree_of(c, self.frames)
-        self.points = Points()
+        self.frames: BodyFrames = frames_of(c.model)
+        self.tree: JointTree = tree_of(c, self.frames)
+        self.points = PointsMade()
         joint_names = Namer("joint")
         joint_names.given |= {step.name for step in self.tree.steps}
         self.joints = [self.joint(step) for step in self.tree.steps if step.kind != FREE]
@@ -60,7 +60,7 @@ class _Said:
         self.closings: Closings = self.closer.closings()
         self.q, self.qd = _start_values(c, asked.keyframe)
         self.held = held(c, self.tree, self.closings, self.q)
-        self.laws: Laws = laws_of(c, self.tree, self.held, self.closings.couplings, self.q, self.qd, asked)
+        self.laws: JointLaws = laws_of(c, self.tree, self.held, self.closings.couplings, self.q, self.qd, asked)
         self.names = joint_names  # a stop shares its name with no joint, force or drive
         self.names.given |= {drive.name for drive in self.laws.drives}
 
@@ -99,7 +99,7 @@ class _Said:
             left_out=left_out,
         )
 
-    def joint(self, step: Step) -> DescribedEntry:
+    def joint(self, step: TreeStep) -> DescribedEntry:
         """A joint of the tree."""
         c = self.c
         ends = (
@@ -130,12 +130,12 @@ class _Said:
             name = self.c.name("site", site) or f"site_{site + 1}"
             self.points.add(self.tree.names[frames.owners[body]], name, frames.place(body, model.site_pos[site]))
 
-    def bodies(self, all_poses: dict[str, Pose]) -> Iterator[DescribedBody]:
+    def bodies(self, all_poses: dict[str, BodyPose]) -> Iterator[DescribedBody]:
         """The bodies of the model, and the carriers between stacked joints."""
         starts = starts_of(self.c, self.tree, self.closings, self.held, all_poses)
         owners = {name: body for body, name in self.tree.names.items()}
         for name in dict.fromkeys(step.child for step in self.tree.steps):
-            start = starts.get(name, Start({}, {}))
+            start = starts.get(name, StartKeys({}, {}))
             if name in self.tree.carriers:
                 carried = mass_properties(self.c.model, self.frames, self.tree.carriers[name])
                 its = self.tree.names[self.tree.carriers[name]]

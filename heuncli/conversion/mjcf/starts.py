@@ -10,14 +10,14 @@ from heuncli.conversion.attitudes import digits, kept
 from heuncli.conversion.mjcf.closings import Closings
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import vec
-from heuncli.conversion.mjcf.poses import Pose
-from heuncli.conversion.mjcf.tree import COORDINATE, FREE, Tree
+from heuncli.conversion.mjcf.poses import BodyPose
+from heuncli.conversion.mjcf.tree import COORDINATE, FREE, JointTree
 from heuncli.named_tuples import NamedTuple
 
 DRAWN = 1e-15  # of a turn against the drawing: rounding
 
 
-class Start(NamedTuple):
+class StartKeys(NamedTuple):
     """Keys of a body, as a spec has them, and remarks beside them."""
 
     keys: dict[str, Any]
@@ -25,10 +25,10 @@ class Start(NamedTuple):
 
 
 def starts_of(
-    c: Compiled, tree: Tree, closings: Closings, held: tuple[int, ...], all_poses: dict[str, Pose]
-) -> dict[str, Start]:
+    c: Compiled, tree: JointTree, closings: Closings, held: tuple[int, ...], all_poses: dict[str, BodyPose]
+) -> dict[str, StartKeys]:
     """The starts of those bodies that need one: a ball's attitude is held, what a loop places begins near its pose."""
-    starts: dict[str, Start] = {}
+    starts: dict[str, StartKeys] = {}
     followers = {coupling.slave for coupling in closings.couplings}
     for step in tree.steps:
         pose = all_poses[step.child]
@@ -42,17 +42,17 @@ def starts_of(
             keys = {"near": near} if (near := _near(pose)) else {}
         else:
             continue
-        starts[step.child] = Start(keys, {})
+        starts[step.child] = StartKeys(keys, {})
     return starts
 
 
-def _near(pose: Pose) -> dict[str, Any]:
+def _near(pose: BodyPose) -> dict[str, Any]:
     """The pose from which the assembly starts to look; nothing where that is the drawing."""
     attitude = _attitude(pose)
     return {"position": kept(vec(pose.p)), **attitude} if attitude else {}
 
 
-def _attitude(pose: Pose) -> dict[str, Any]:
+def _attitude(pose: BodyPose) -> dict[str, Any]:
     S = np.asarray(pose.S)
     if np.abs(S - np.eye(3)).max() <= DRAWN:
         return {}
@@ -60,6 +60,6 @@ def _attitude(pose: Pose) -> dict[str, Any]:
     return {"orientation": {"matrix": rows}}
 
 
-def _rates(pose: Pose, *names: str) -> dict[str, Any]:
+def _rates(pose: BodyPose, *names: str) -> dict[str, Any]:
     values = {"velocity": pose.v, "angular_velocity": pose.sigma}
     return {name: kept(vec(values[name])) for name in names if np.any(values[name])}

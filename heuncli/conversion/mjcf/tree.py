@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.frames import Frames
+from heuncli.conversion.mjcf.frames import BodyFrames
 from heuncli.conversion.names import names_of
 from heuncli.named_tuples import NamedTuple
 
@@ -23,7 +23,7 @@ COORDINATE = {"pin": "angle", "slide": "travel"}
 RATE = {"pin": "rate", "slide": "speed"}
 
 
-class Step(NamedTuple):
+class TreeStep(NamedTuple):
     """One joint of the tree, from one body of the spec to the next.
 
     joint: its number in MuJoCo, None of a weld; kind: its type in a spec, or FREE; body: the body of MuJoCo in whose
@@ -38,21 +38,21 @@ class Step(NamedTuple):
     child: str
 
 
-class Tree(NamedTuple):
+class JointTree(NamedTuple):
     """names: of those bodies of MuJoCo that are bodies of the spec (0: the ground); wanted: what MuJoCo calls them."""
 
     names: dict[int, str]
     wanted: dict[int, str]
     carriers: dict[str, int]  # the bodies between stacked joints, and the body that they carry
-    steps: tuple[Step, ...]
+    steps: tuple[TreeStep, ...]
 
     @property
-    def of_joint(self) -> dict[int, Step]:
+    def of_joint(self) -> dict[int, TreeStep]:
         """The steps by the number of the joint."""
         return {step.joint: step for step in self.steps if step.joint is not None}
 
 
-def tree_of(c: Compiled, frames: Frames) -> Tree:
+def tree_of(c: Compiled, frames: BodyFrames) -> JointTree:
     """The tree of a model."""
     owners = sorted(set(frames.owners) - {0})
     wanted = {body: c.name("body", body) or f"body_{body}" for body in owners}
@@ -67,17 +67,17 @@ def tree_of(c: Compiled, frames: Frames) -> Tree:
     of_body = {0: GROUND, **dict(zip(owners, body_names, strict=False))}
     of_carrier = dict(zip((joint for joint, _ in carriers), body_names[len(owners) :], strict=True))
 
-    def steps() -> Iterator[Step]:
+    def steps() -> Iterator[TreeStep]:
         for body in owners:
             at = of_body[frames.owners[int(c.model.body_parentid[body])]]
             for joint, kind in joints[body]:
                 child = of_carrier.get(joint, of_body[body])
-                yield Step(joint, kind, body, of_joint[joint], at, child)
+                yield TreeStep(joint, kind, body, of_joint[joint], at, child)
                 at = child
             if body in of_weld:
-                yield Step(None, "weld", body, of_weld[body], at, of_body[body])
+                yield TreeStep(None, "weld", body, of_weld[body], at, of_body[body])
 
-    return Tree(of_body, wanted, {of_carrier[joint]: body for joint, body in carriers}, tuple(steps()))
+    return JointTree(of_body, wanted, {of_carrier[joint]: body for joint, body in carriers}, tuple(steps()))
 
 
 def _joints(c: Compiled, body: int) -> list[tuple[int, str]]:
