@@ -23,6 +23,7 @@ from heuncli.spec.models import Matrix, Vec
 # What may stand behind a key of a spec: a number, a word or expression, true or false, None (null), tuples and mappings
 # of these.
 Value = Any
+LEFT_OUT = "import-left-out"  # the code of what has no counterpart in a spec
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 

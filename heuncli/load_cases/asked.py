@@ -151,7 +151,7 @@ def _blows(asked: AskedInstant, study: Study) -> Iterator[TakenInstant]:
 
 def _known(blows: Sequence[Block], word: str) -> str:
     if not blows:
-        return "it has none"
+        return "nothing is struck in it: times take cases, such as --at last"
     names = dict.fromkeys(name for block in blows for name in block["names"])
     listed = ", ".join(f"{k} ({' and '.join(block['names'])})" for k, block in enumerate(blows[:5]))
     more = f" ... {len(blows) - 1}" if len(blows) > 5 else ""

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.conversion.attitudes import after
-from heuncli.conversion.described import DescribedEntry
+from heuncli.conversion.described import LEFT_OUT, DescribedEntry
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import BodyFrames, rotation
 from heuncli.conversion.mjcf.points import PointsMade
@@ -27,7 +27,6 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import Matrix, Vec
 
 SAME = 1e-6  # of a turn: the digits to which people write quaternions
-LEFT_OUT = "import-left-out"
 SITES = 2  # of a tendon that runs straight
 
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from heuncli.conversion.asked import ImportAsked
-from heuncli.conversion.described import DescribedEntry, DescribedParameter
+from heuncli.conversion.described import LEFT_OUT, DescribedEntry, DescribedParameter
 from heuncli.conversion.names import Namer, called
 from heuncli.conversion.spec_text import number_text, pointed
 from heuncli.conversion.told_moving import told_moving
@@ -139,7 +139,7 @@ class RobotCoordinates:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {number_text(joint.friction)}, speed: 0.01}}"
         message = f'friction="{joint.friction:g}" is not taken over'
         hint = f"a friction has a rate at which it is full: forces: {{friction_{name}: {law}}}"
-        self.left_out.append(self.fields.problem("import-left-out", joint.element, joint.path, message, hint))
+        self.left_out.append(self.fields.problem(LEFT_OUT, joint.element, joint.path, message, hint))
 
 
 def ratio(leader: str, multiplier: float, offset: float, alike: bool) -> str:
