@@ -41,6 +41,13 @@ class AskedRun:
         self._lock = RLock() if lock is None else lock
 
     @property
+    def times(self) -> Array:
+        """The instants at which it is told, (n_t,) [s]. Read-only: the run's own."""
+        times = self.results.time.view()
+        times.flags.writeable = False
+        return times
+
+    @property
     def horizon(self) -> float | None:
         """The instant [s] from which on nothing is claimed; None where all is."""
         horizon = self.results.accuracy.get("horizon")

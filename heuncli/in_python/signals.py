@@ -85,7 +85,7 @@ class Signal(NDArrayOperatorsMixin):
 
     @property
     def _time(self) -> Array:
-        return self._run.results.time
+        return self._run.times
 
     @property
     def unit(self) -> str:

@@ -81,8 +81,8 @@ class Solved(Mapping[str, "Signal"]):
 
     @property
     def time(self) -> Array:
-        """The instants at which results are told, (n_t,) [s]."""
-        return self.results.time
+        """The instants at which results are told, (n_t,) [s]. Read-only."""
+        return self._run.times
 
     @property
     def status(self) -> str:

@@ -51,7 +51,7 @@ def gathered(study: Study, body: str, asked: Sequence[AskedInstant]) -> LoadCase
     instants = taken(asked, study)
     cases = dict([*_of_instants(study, index, instants), *_of_blows(study, index, instants)])
     own, results = mechanism.bodies[index], study.results
-    loaded = LoadedBody(own.name, own.mass, own.center, own.inertia, mechanism.planar)
+    loaded = LoadedBody(own.name, own.mass, own.center.copy(), own.inertia.copy(), mechanism.planar)  # the reader's own
     for case in cases.values():
         require_balance(loaded, case)
     errors = results.accuracy.get("estimate", {})
