@@ -1,4 +1,4 @@
-"""Load cases of runs that were asked for something else: the joints on the body are told all the same."""
+"""Load cases whatever a run was asked for: the joints on the body are told, and the cases are the reader's own."""
 
 from __future__ import annotations
 
@@ -48,3 +48,17 @@ def test_a_body_that_was_left_out() -> None:
     study = heuncli.solve(SCENE | {"analysis": MOTION}, only="joints.elbow")
     with pytest.raises(heuncli.UsageError, match="other: nothing that this run was asked for depends on it"):
         study.load_cases("other", "first")
+
+
+def test_who_changes_a_case_changes_no_scene() -> None:
+    study = heuncli.solve(SCENE | {"analysis": MOTION})
+    before = study.load_cases("upper", "0.05")
+    for one in (before.body.center, before.body.inertia, *(action.at for action in before.cases[0].actions)):
+        one += 1.0
+    same(study.load_cases("upper", "0.05"), heuncli.solve(SCENE | {"analysis": MOTION}).load_cases("upper", "0.05"))
+
+
+def test_a_blow_with_the_name_of_a_force_is_a_blow() -> None:
+    push = {"forces": {"blow": {"type": "force", "on": "lower.end", "vector": [0, 1, 0]}}, "analysis": MOTION}
+    cases = heuncli.solve(SCENE | push).load_cases("lower", "first,impulse:blow").cases
+    assert [next(one.kind for one in case.actions if one.name == "blow") for case in cases] == ["force", "impulse"]
