@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.errors import SpecError
+from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
 from heuncli.study.ask.study import Study
@@ -80,7 +80,9 @@ class AskedRun:
             return measured(self.study, words)
 
     def told_at(self, times: Array) -> AskedRun:
-        """The same run at other instants, (n,) ascending. Raises UsageError outside of it."""
+        """The same run at other instants, (n,) ascending. Raises UsageError outside of it, and for none."""
+        if not len(times):
+            raise UsageError(Problem("bad-option", "at: no instants are given", hint="such as at=[0.1, 0.2], in s"))
         with self.asking():
             found = self.study.resample(within_run("at", times.tolist(), self.study.results.time))
         return AskedRun(self.study, found, self._lock)

@@ -165,6 +165,11 @@ def test_what_was_left_out_is_named(study: heuncli.Solved) -> None:
     assert [*some.results.bodies] == [] and np.array_equal(some["joints.pivot.force"], study["joints.pivot.force"])
     with pytest.raises(heuncli.UnknownPath, match="only= leave them out"):
         some["bodies.bar.center"]
+    assert 3 not in some and "joints.pivot.force" in some
+    with pytest.raises(heuncli.UnknownPath, match="3 is no path"):
+        some[3]  # type: ignore[index]
+    with pytest.raises(heuncli.UsageError, match="no instants"):
+        some.at([])
 
 
 def test_by_cause_and_other_axes() -> None:
