@@ -95,7 +95,7 @@ LEFT = {  # what is left out, and what the warning says of it
     "friction": (scene('<body><joint name="f" frictionloss=".1"/><geom size=".1"/></body>'), "frictionloss.*joint f"),
     "ball spring": (scene('<body><joint name="b" type="ball" stiffness="1"/><geom size=".1"/></body>'), "springs.*b"),
     "free damping": (
-        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of a free joint.*r",
+        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of a free joint.*joint r",
     ),
     "servo": (scene(rest='<actuator><position name="p" joint="elbow"/></actuator>'), "actuators with.*actuator p"),
     "muscle": (scene(rest='<actuator><muscle name="m" joint="elbow" lengthrange="0 1"/></actuator>'), "actuators"),

@@ -101,8 +101,10 @@ def _curved(c: Compiled) -> list[int]:
 
 
 def _free_damped(c: Compiled) -> list[int]:
-    free = np.flatnonzero(_of_type(c, "mjJNT_FREE"))
-    return [joint for joint in _joints_of_dofs(c, c.model.dof_damping) if joint in free]
+    """Free joints with damping, and balls with one below 0."""
+    free, balls = np.flatnonzero(_of_type(c, "mjJNT_FREE")), np.flatnonzero(_of_type(c, "mjJNT_BALL"))
+    driving = [joint for joint in _joints_of_dofs(c, np.minimum(c.model.dof_damping, 0.0)) if joint in balls]
+    return driving + [joint for joint in _joints_of_dofs(c, c.model.dof_damping) if joint in free]
 
 
 def _actuators(c: Compiled) -> list[int]:
@@ -192,7 +194,7 @@ ROWS = (
     ),
     WithoutCounterpart(
         "joint", _free_damped,
-        "damping of a free joint is not in a spec", "drag on a point is a force by its velocity: -c*points.tip.vx",
+        "damping of a free joint, or below 0 of a ball, is not in a spec", "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
     WithoutCounterpart(
         "joint", _curved,
