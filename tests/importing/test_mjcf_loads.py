@@ -1,4 +1,4 @@
-"""Loads of small models that ask for something of their own: what drives hold is what MuJoCo's inverse dynamics says."""
+"""Loads of small models with something of their own: what drives hold is what MuJoCo's inverse dynamics says."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ class _Making:
         """A joint that stands, or starts, where its parameter says."""
         c, step = self.c, self.steps[joint]
         rate = float(self.qd[c.model.jnt_dofadr[joint]])
-        value = float(self.q[c.model.jnt_qposadr[joint]])
+        value = self.start(joint)
         self.parameters.append(DescribedParameter(step.name, value_text(step, value), _limits(c, joint, step)))
         place = _less(step.name, zero(c, joint))
         if self.asked.free:
@@ -62,6 +62,14 @@ class _Making:
         moving = f" {'-' if rate < 0.0 else '+'} {pointed(abs(rate))}*t" if rate else ""
         self.laws[joint] = step.name + moving
         self.drive(joint, place + moving)
+
+    def start(self, joint: int) -> float:
+        """MuJoCo's coordinate at the start; where stops are to hold it, and it lies beyond them, the nearest."""
+        model, value = self.c.model, float(self.q[self.c.model.jnt_qposadr[joint]])
+        if not (self.asked.limits and model.jnt_limited[joint]):
+            return value
+        low, high = (float(limit) for limit in model.jnt_range[joint])
+        return min(max(value, low), high)
 
     def follow(self, coupling: Coupling) -> None:
         """A joint that follows another, by the law of that one."""

@@ -36,7 +36,7 @@ def joint_loads(c: Compiled, tree: JointTree, name: Name) -> Iterator[DescribedE
         if stiffness and step.kind in COORDINATE:
             reference = float(c.model.qpos_spring[c.model.jnt_qposadr[step.joint]])
             yield _spring(step, stiffness, reference - zero(c, step.joint), name)
-        if step.kind in COORDINATE and damping or step.kind == "ball" and damping > 0.0:
+        if (step.kind in COORDINATE and damping) or (step.kind == "ball" and damping > 0.0):
             yield _damper(step, damping, name)
 
 

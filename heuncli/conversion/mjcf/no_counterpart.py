@@ -194,7 +194,8 @@ ROWS = (
     ),
     WithoutCounterpart(
         "joint", _free_damped,
-        "damping of a free joint, or below 0 of a ball, is not in a spec", "drag on a point is a force by its velocity: -c*points.tip.vx",
+        "damping of a free joint, or below 0 of a ball, is not in a spec",
+        "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
     WithoutCounterpart(
         "joint", _curved,
