@@ -32,6 +32,7 @@ MODELS = {
     "whole": arm('stiffness="5" springref="2" damping="3"'),
     "weight taken off": arm(body='gravcomp="1"', flags='spring="disable"'),
     "not without springs and dampers": arm(body='gravcomp="1"', flags='spring="disable" damper="disable"'),
+    "weight taken off by motors": arm('actuatorgravcomp="true"', 'gravcomp="1"'),
     "tendons within a body": arm(
         rest="""<tendon><spatial stiffness="3"><site site="wall"/><site site="wall2"/></spatial>
         <spatial stiffness="3" damping="1"><site site="tip"/><site site="mid"/></spatial>
@@ -52,3 +53,14 @@ def test_drives_hold_what_mujoco_says(name):
     results = solve(load("m.yaml", spec_text(machine, "m.yaml")), Options(wanted=frozenset({"joints"}))).results
     found = [results.joints[joint]["drive"][0] for joint in ("turn", "way")]
     near(found, data.qfrc_inverse, float(np.abs(data.qfrc_inverse).max()), 1e-13)
+
+
+def test_a_weight_that_some_motors_take_off_is_told():
+    shared = MODELS["weight taken off by motors"].replace('actuatorgravcomp="true"', "", 1)
+    told = shared.replace('gravcomp="1"', "").replace('<body name="rod"', '<body name="rod" gravcomp="1"')
+    (problem,) = described(told).left_out
+    assert "actuatorgravcomp" in problem.message and "body rod" in problem.message
+    (force,) = described(told, free=True).forces
+    assert force.keys["type"] == "force" and not described(told, free=True).left_out
+    (own,) = described(shared).forces  # of the arm, which is carried by the joint that has it not
+    assert own.name == "gravcomp_arm" and not described(shared).left_out

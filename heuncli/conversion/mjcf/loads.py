@@ -91,20 +91,35 @@ def tendon_springs(c: Compiled, closer: Closer, name: Name) -> Iterator[Describe
 
 
 def weightless(
-    c: Compiled, frames: BodyFrames, tree: JointTree, points: PointsMade, gravity: Any, name: Name
+    c: Compiled, frames: BodyFrames, tree: JointTree, points: PointsMade, gravity: Any, name: Name, free: bool
 ) -> Iterator[DescribedEntry]:
-    """What carries the weight of bodies that MuJoCo takes it from; not with both springs and dampers switched off."""
+    """What carries the weight of bodies that MuJoCo takes it from; not with both springs and dampers switched off.
+
+    What joints with `actuatorgravcomp` carry is their motors', and in what drives take; free joints have no drive.
+    """
     if c.switched_off("PASSIVE") or (c.switched_off("SPRING") and c.switched_off("DAMPER")):
         return
     for body in range(1, int(c.model.nbody)):
         share, mass = float(c.model.body_gravcomp[body]), float(c.model.body_mass[body])
         if not (share and mass and frames.owners[body]) or not any(gravity):
             continue
+        if not free and all(by_motor(c, body)):
+            continue
         its = tree.names[frames.owners[body]]
         center = points.add(its, "center", frames.place(body, c.model.body_ipos[body]))
         vector = vec(-share * mass * g for g in gravity)
         remark = f"gravcomp {number_text(share)} of {c.told('body', body)}"
         yield DescribedEntry(name(f"gravcomp_{its}"), {"type": "force", "on": center, "vector": vector}, remark)
+
+
+def by_motor(c: Compiled, body: int) -> list[bool]:
+    """Of each joint that carries a body, whether its motor takes the weight off (`actuatorgravcomp`)."""
+    found: list[bool] = []
+    while body:
+        first = int(c.model.body_jntadr[body])
+        found += [bool(c.model.jnt_actgravcomp[k]) for k in range(first, first + int(c.model.body_jntnum[body]))]
+        body = int(c.model.body_parentid[body])
+    return found
 
 
 def stops(c: Compiled, tree: JointTree, driven: frozenset[int], name: Name) -> Iterator[DescribedEntry]:

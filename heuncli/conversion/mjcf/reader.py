@@ -71,14 +71,14 @@ class _Said:
         forces = (
             *joint_loads(c, self.tree, self.names.name),
             *tendon_springs(c, self.closer, self.names.name),
-            *weightless(c, self.frames, self.tree, self.points, gravity, self.names.name),
+            *weightless(c, self.frames, self.tree, self.points, gravity, self.names.name, self.asked.free),
         )
         limits = tuple(stops(c, self.tree, self.laws.driven, self.names.name)) if self.asked.limits else ()
         self.sites()
         left_out = (
             *self.laws.left_out,
             *self.closings.left_out,
-            *without_counterpart(c, self.closings.rods, self.asked.limits),
+            *without_counterpart(c, self.closings.rods, self.asked.limits, self.asked.free),
         )
         return DescribedMachine(
             title=_title(c),
