@@ -18,6 +18,7 @@ from heuncli.conversion.described import (
     DescribedPoint,
     Value,
 )
+from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.spec.models import Matrix
 from heuncli.spec.source import plain
@@ -40,6 +41,7 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield f"# heun run {_word(name)}"
     yield "#"
     yield from map(_comment, machine.told)
+    yield from map(_comment, _left_out(machine.left_out))
     yield _comment(f"Made by heun import from {_file(machine.file)}, {machine.form}, sha256")
     yield _comment(machine.sha256)
     yield "heun: 1 # version of the format; plain numbers are SI"
@@ -59,6 +61,15 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     ):
         yield from _block(machine, name_, (line for entry in entries for line in _entry(entry)))
     yield from _block(machine, "analysis", (f"  {key}: {_flow(value)}" for key, value in machine.analysis.items()))
+
+
+def _left_out(problems: Sequence[Problem]) -> Iterator[str]:
+    """What of the file is not in the spec: whose it is, where the message does not say it, and the message."""
+    if problems:
+        yield "Left out:"
+    for problem in problems:
+        path = problem.location.path if problem.location is not None else ""
+        yield f"- {path}: {problem.message}" if path else f"- {problem.message}"
 
 
 def _file(name: str) -> str:

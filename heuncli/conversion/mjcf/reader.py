@@ -93,7 +93,7 @@ class _Said:
             drives=self.laws.drives,
             forces=forces,
             stops=limits,
-            told=tuple(self.told(left_out)),
+            told=tuple(self.told()),
             remarks={"parameters": "where the joints stand"},
             left_out=left_out,
         )
@@ -159,7 +159,7 @@ class _Said:
                 name, mass.mass, mass.center, mass.inertia, self.points.of(name), (), start.keys, remark, start.notes
             )
 
-    def told(self, left_out: tuple[Problem, ...]) -> Iterator[str]:
+    def told(self) -> Iterator[str]:
         c, model = self.c, self.c.model
         yield from self.laws.told
         if self.tree.carriers:
@@ -174,9 +174,6 @@ class _Said:
             yield "Equalities, soft in MuJoCo, are rigid joints here."
         yield from self.closings.told
         yield from (f"MuJoCo warns: {text}" for text in c.warned)
-        if left_out:
-            yield "Left out:"
-            yield from (f"- {problem.message}" for problem in left_out)
 
 
 def _start_values(c: Compiled, keyframe: str | None) -> tuple[Any, Any]:
