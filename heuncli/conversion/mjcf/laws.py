@@ -56,7 +56,7 @@ class _Making:
         place = _less(step.name, zero(c, joint))
         if self.asked.free:
             self.initial[step.name] = {COORDINATE[step.kind]: place}
-            if rate:
+            if self.qd.any():  # without a rate of its own a body would rather rest in the world than on its parent
                 self.initial[step.name][RATE[step.kind]] = number_text(rate)
             return
         moving = f" {'-' if rate < 0.0 else '+'} {pointed(abs(rate))}*t" if rate else ""
