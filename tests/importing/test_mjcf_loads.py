@@ -64,3 +64,21 @@ def test_a_weight_that_some_motors_take_off_is_told():
     assert force.keys["type"] == "force" and not described(told, free=True).left_out
     (own,) = described(shared).forces  # of the arm, which is carried by the joint that has it not
     assert own.name == "gravcomp_arm" and not described(shared).left_out
+
+
+def test_joints_that_follow_each_other_do_not_fall():
+    """Of a circle one leads; what follows a joint that a loop places is held by itself."""
+    circle = arm(
+        rest="""<equality><joint joint1="turn" joint2="way" polycoef="0 2 0 0 0"/>
+        <joint joint1="way" joint2="turn" polycoef="0 0.5 0 0 0"/></equality>"""
+    )
+    machine = described(circle)
+    assert [problem.message.split(": ")[-1] for problem in machine.left_out] == [
+        "turn follows a joint that nothing else holds"
+    ]
+    assert [one.keys["joint"] for one in machine.drives] == ["turn", "way"]
+    assert machine.drives[1].keys["travel"] == "0.5*turn"
+    placed = '<body name="lid" pos="1 0 0"><joint name="lid" axis="0 1 0"/><geom size=".1"/></body>'
+    rest = '<equality><weld body1="arm"/><joint joint1="lid" joint2="turn"/></equality>'
+    machine = described(arm(more=placed, rest=rest).replace('qpos="0.3 0.2" qvel="1 2"', ""))
+    assert len(machine.left_out) == 1 and [one.keys["joint"] for one in machine.drives] == ["way", "lid"]

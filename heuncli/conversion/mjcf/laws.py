@@ -15,6 +15,7 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedParameter
 from heuncli.conversion.mjcf.closings import Coupling, left_out, moved, pointed
 from heuncli.conversion.mjcf.compiled import Compiled
+from heuncli.conversion.mjcf.holding import HeldJoints
 from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
 from heuncli.conversion.names import called
 from heuncli.conversion.spec_text import number_text
@@ -38,8 +39,11 @@ class JointLaws(NamedTuple):
 class _Making:
     """The laws of one model while they are made; laws: of the joints of MuJoCo's, in its coordinates."""
 
-    def __init__(self, c: Compiled, tree: JointTree, q: Any, qd: Any, asked: ImportAsked) -> None:
+    def __init__(
+        self, c: Compiled, tree: JointTree, idle: tuple[Coupling, ...], q: Any, qd: Any, asked: ImportAsked
+    ) -> None:
         self.c, self.steps, self.q, self.qd, self.asked = c, tree.of_joint, q, qd, asked
+        self.idle = idle
         self.parameters: list[DescribedParameter] = []
         self.drives: list[DescribedEntry] = []
         self.initial: dict[str, dict[str, str]] = {}
@@ -80,10 +84,10 @@ class _Making:
             raise SpecError(
                 Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
             )
-        argument = self.argument(coupling)
+        argument = None if coupling in self.idle else self.argument(coupling)
         if argument is None or coupling.slave in self.driven:
-            twice = "twice, by another equality, too"
-            why = f"{step.name} follows {'a joint that nothing holds' if argument is None else twice}"
+            none = "a joint that nothing else holds"
+            why = f"{step.name} follows {none if argument is None else 'twice, by another equality, too'}"
             self.left_out.append(left_out(c, "equality", coupling.equality, why, HELD_HINT))
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
@@ -131,17 +135,18 @@ class _Making:
 def laws_of(
     c: Compiled,
     tree: JointTree,
-    held: tuple[int, ...],
+    held: HeldJoints,
     couplings: tuple[Coupling, ...],
     q: Any,
     qd: Any,
     asked: ImportAsked,
 ) -> JointLaws:
     """The parameters and drives: q, qd are MuJoCo's coordinates and rates at the start. Raises SpecError."""
-    making = _Making(c, tree, q, qd, asked)
-    for joint in held:
+    idle = tuple(coupling for coupling in couplings if coupling not in held.followed)
+    making = _Making(c, tree, idle, q, qd, asked)
+    for joint in held.joints:
         making.hold(joint)
-    for coupling in _in_order(couplings):
+    for coupling in (*_in_order(held.followed), *idle):
         making.follow(coupling)
     return JointLaws(
         tuple(making.parameters),

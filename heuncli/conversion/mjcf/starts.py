@@ -10,6 +10,7 @@ from heuncli.conversion.attitudes import digits, kept
 from heuncli.conversion.mjcf.closings import Closings
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import BodyFrames, vec
+from heuncli.conversion.mjcf.holding import HeldJoints
 from heuncli.conversion.mjcf.poses import BodyPose, poses
 from heuncli.conversion.mjcf.tree import COORDINATE, FREE, GROUND, JointTree
 from heuncli.named_tuples import NamedTuple
@@ -25,7 +26,7 @@ class StartKeys(NamedTuple):
 
 
 def starts_of(
-    c: Compiled, tree: JointTree, closings: Closings, held: tuple[int, ...], frames: BodyFrames, q: Any, qd: Any
+    c: Compiled, tree: JointTree, closings: Closings, held: HeldJoints, frames: BodyFrames, q: Any, qd: Any
 ) -> dict[str, StartKeys]:
     """The starts of those bodies that need one: a ball's attitude is held, what a loop places begins near its pose.
 
@@ -33,7 +34,7 @@ def starts_of(
     joints that are held.
     """
     starts: dict[str, StartKeys] = {}
-    followers = {coupling.slave for coupling in closings.couplings}
+    moved = {*held.joints, *(coupling.slave for coupling in held.followed)}
     all_poses = poses(c, frames, tree, q, qd)
     drawn = poses(c, frames, tree, c.model.qpos0, np.zeros(int(c.model.nv)))
     tied = _tied(tree, closings)
@@ -43,9 +44,7 @@ def starts_of(
             keys = {"position": kept(vec(pose.p)), **_attitude(pose), **_rates(pose, "velocity", "angular_velocity")}
         elif step.kind == "ball" and not closings.carried:
             keys = {**_attitude(pose), **_rates(pose, "angular_velocity")}
-        elif step.kind in {"ball", FREE} or (
-            step.kind in COORDINATE and step.joint not in held and step.joint not in followers
-        ):
+        elif step.kind in {"ball", FREE} or (step.kind in COORDINATE and step.joint not in moved):
             starts[step.child] = _near(pose, drawn[step.child], step.kind in {FREE, "slide"})
             continue
         else:
