@@ -111,3 +111,23 @@ def test_too_fast_to_be_followed_is_told() -> None:
     run = table("10*sin(2e6*t*(1 + t))")
     peak(run, ACROSS, "max")
     assert TOO_FEW.format(len(run.search_times)) in run.later_warnings
+
+
+@pytest.mark.parametrize("led", [True, False], ids=["driven", "free"])
+@pytest.mark.parametrize(
+    ("law", "formula"),
+    [
+        ("10*sin(400*guide.travel)*exp(-guide.travel)", lambda x: 10 * np.sin(400 * x) * np.exp(-x)),
+        ("10*sin(91*guide.travel + 1) + 3*sin(5*guide.travel)", lambda x: 10 * np.sin(91 * x + 1) + 3 * np.sin(5 * x)),
+    ],
+    ids=["damped", "orders"],
+)  # fmt: skip
+def test_loads_along_a_coordinate_that_push_nothing(law: str, formula: Callable[[Array], Array], led: bool) -> None:
+    """Across a guide on which a table goes evenly, led or free: its motion takes no more steps for them."""
+    text = TABLE.format(push=law, travel="2*t", samples=2, more="")
+    if not led:
+        head, rest = text.split("drives:")
+        text = head.replace("[1, 0, 0]}", "[1, 0, 0], initial: {speed: 2 m/s}}") + rest[rest.index("forces:") :]
+    low, high = both(study(text), ACROSS)
+    assert math.isclose(high.value, highest(lambda t: -formula(2.0 * t)), rel_tol=1e-8)
+    assert math.isclose(low.value, -highest(lambda t: formula(2.0 * t)), rel_tol=1e-8)

@@ -20,7 +20,7 @@ def search_times(setup: Setup, history: History, most: int = MOST_SEARCHED) -> t
     """Instants close enough to bracket every extreme, (n,) ascending; and whether there are enough of them.
 
     The asked ones; some within each step, at uneven distances, so that nothing that repeats itself looks at rest; both
-    sides of all jumps; as many as show how loads and drives in time run; and so many that no body turns far
+    sides of all jumps; as many as show how loads and drives run; and so many that no body turns far
     between two of them: a rotor that is driven, or spins on, needs no steps, but its loads turn. most: so many, about.
     """
     times = history.times
@@ -42,7 +42,17 @@ def search_times(setup: Setup, history: History, most: int = MOST_SEARCHED) -> t
     parts = np.minimum(parts, max(1, most // len(grid))) if not enough else parts
     first = np.repeat(np.arange(len(parts)), parts)
     share = (np.arange(len(first)) - np.repeat(np.cumsum(parts) - parts, parts)) / parts[first]
-    return np.append(grid[first] + share * np.diff(grid)[first], grid[-1:]), enough
+    times = np.append(grid[first] + share * np.diff(grid)[first], grid[-1:])
+    if not enough or not has_loads_along_coordinates(setup):
+        return times, enough
+    from heuncli.study.search.along_coordinates import close_to_loads
+
+    return close_to_loads(setup, history, times, most)
+
+
+def has_loads_along_coordinates(setup: Setup) -> bool:
+    """Whether loads are functions of coordinates or points: where these push nothing, no step tells how fast."""
+    return any(value.uses for load in setup.scene.mechanism.loads for value in load.values)
 
 
 def with_those_in_time(setup: Setup, grid: Array, most: int) -> tuple[Array, bool]:

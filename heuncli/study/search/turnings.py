@@ -88,21 +88,30 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
 
 
 def resolved(
-    sample: ColumnsAt, found: SampledTurns, slack: Slack, *, most: int = MOST_PROBES, probes: Array | None = None
+    sample: ColumnsAt,
+    found: SampledTurns,
+    slack: Slack,
+    *,
+    most: int = MOST_PROBES,
+    probes: Array | None = None,
+    doubted: Mask | None = None,
 ) -> SampledTurns:
     """The grid with more instants where a number does not run as its neighbours foretell.
 
     slack: what of the numbers does not count. probes (m,): instants between those of the grid that are asked, too; with
-    these what was foretold is left out. most: so many instants are asked for.
+    these what was foretold is left out. most: so many instants are asked for. doubted (n - 1,): the intervals of the
+    grid that need be asked; all, by default.
     """
     span, asked = float(np.ptp(found.times)), 0
-    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that were not asked yet
+    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that are to be asked
+    if doubted is not None:
+        new = doubted
     also = NO_INSTANTS if probes is None else probes
     for _ in range(MOST_ROUNDS):
         times, values, complete = found
         wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
         k = np.flatnonzero(new & wide & ~sides_of_jumps(times))
-        if not len(k) or not np.isfinite(values).all():
+        if not len(k) + len(also) or not np.isfinite(values).all():
             return found
         if asked > most:
             return found._replace(complete=False)
@@ -120,10 +129,31 @@ def resolved(
     return found._replace(complete=found.complete and not new.any())
 
 
+def doubtful(found: SampledTurns, slack: Slack) -> Mask:
+    """The intervals of a grid beside an instant that its neighbours do not foretell, (n - 1,): the others, half as
+    wide as what foretells, need not be asked."""
+    times, values, _ = found
+    doubted = np.ones(max(len(times) - 1, 0), dtype=bool)
+    if len(times) < 5:
+        return doubted
+    jumps = np.append(np.append(True, sides_of_jumps(times)), True)
+    inner = np.arange(2, len(times) - 2)
+    inner = inner[~(jumps[inner - 1] | jumps[inner] | jumps[inner + 1] | jumps[inner + 2])]
+    four = inner[:, None] + np.array([-2, -1, 1, 2])
+    known = np.zeros(len(times), dtype=bool)
+    known[inner] = as_expected(found, four, inner - 1, times[inner], values[inner], slack)
+    doubted &= ~(known[1:] & known[:-1])
+    return doubted
+
+
 def foretold(found: SampledTurns, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
     """Whether what is there at instants within intervals is what the cubics through their neighbours have, (m,)."""
+    return as_expected(found, neighbours(found.times, k), k, at, there, slack)
+
+
+def as_expected(found: SampledTurns, four: Indices, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
+    """Whether the cubics through four instants each, (m, 4), have what is there at others in the intervals k, (m,)."""
     times, values, _ = found
-    four = neighbours(times, k)
     expected = cubic(times[four], values[four], at)
     swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
     size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
