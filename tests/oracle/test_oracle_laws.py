@@ -28,11 +28,13 @@ def test_scenes_fit(seed: int) -> None:
 
 
 def test_nothing_is_shared_with_the_program() -> None:
-    """The oracle and its own tests; the other tests here hold the program against it."""
+    """The oracle and its own tests; the other tests here hold the program against it. What others have published, which
+    is nobody's calculation here, is read as the program reads it."""
     folder = Path(__file__).parent
     for file in {*folder.glob("*.py")} - {*folder.glob("test_*.py")} | {*folder.glob("test_oracle_*.py")}:
         for line in file.read_text(encoding="utf-8").splitlines():
-            assert not line.lstrip().startswith(("import heuncli", "from heuncli", "from tests.shared"))
+            if line != "from tests.shared.published import printed_values":
+                assert not line.lstrip().startswith(("import heuncli", "from heuncli", "from tests.shared"))
 
 
 def pushed(state: State, a: Array, h: float) -> dict[str, Placed]:

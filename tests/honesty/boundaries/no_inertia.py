@@ -140,6 +140,7 @@ PART = Part(
         Row("KERNEL.own_share", moved_by_a_lever, "refused: no-inertia", "fine"),
     ),
     exempt={
+        "NO_MASS": "which joints the tree cuts beside such a body: either way the same (laws/test_weightless_bodies)",
         "SLENDER": "which bodies' moments are looked at at all: those of the others are far above NO_INERTIA",
         "KERNEL.much_lent": "how much inertia is lent: what it takes is given back",
         "SPINS_LIGHTLY": "what is integrated: either way the same motion, at other costs",
