@@ -12,10 +12,11 @@ from heuncli.errors import Problem
 from heuncli.spec.reading import name_of
 
 
-def require_other_file(output: str | None, specs: Sequence[str], option: str = "-o") -> None:
+def require_other_file(output: str | None, specs: Sequence[str], option: str = "-o", are: str = "spec") -> None:
     """The output must not go into what the results are made from: the specs, and all that has been read so far.
 
     For None and `-` that is standard output, which a shell may have led to the end of a spec (`>>`).
+    are: what the specs are called, where they are none: `model`.
     """
     to_stdout = output is None or output == STDOUT
     state = _of_standard_output() if to_stdout else _state(output)
@@ -24,7 +25,7 @@ def require_other_file(output: str | None, specs: Sequence[str], option: str = "
     name = name_of(state)
     itself = name in specs or (not to_stdout and any(same_file(output, spec) for spec in specs))
     if itself or name is not None:
-        what = "the spec itself" if itself else "a table of the spec"
+        what = f"the {are} itself" if itself else f"a table of the {are}"
         where = "standard output" if to_stdout else f"{option} {output}"
         raise UsageError(Problem("bad-option", f"{where}: that is {what}", hint="name another file"))
 

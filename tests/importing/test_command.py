@@ -46,7 +46,8 @@ def test_standard_input_is_read(heun):
 
 @pytest.mark.usefixtures("arm")
 def test_the_model_is_not_written_over(heun, arm):
-    assert heun("import", "arm.urdf", "-o", "arm.urdf").returncode == 2
+    done = heun("import", "arm.urdf", "-o", "arm.urdf")
+    assert done.returncode == 2 and "that is the model itself" in done.stderr
     assert arm.read_text() == ARM
 
 

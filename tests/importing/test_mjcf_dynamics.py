@@ -60,6 +60,7 @@ def test_what_is_let_go_accelerates_as_in_mujoco(seed):
     model = mujoco.MjModel.from_xml_string(tree.model())
     data = mujoco.MjData(model)
     q, v, _ = random_state(model, rng)
+    v[rng.random(model.nv) < 0.3] = 0.0  # a rate of 0 is one, where others are not
     text = imported(tree.model(rest=key(model, q, v)), keyframe="start", free=True)
     study = solve(load("tree.yaml", text), Options(wanted=REPORTS))
     data.qpos[:], data.qvel[:] = q, v

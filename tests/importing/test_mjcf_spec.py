@@ -88,6 +88,9 @@ def test_limits_are_stops_of_free_joints():
     stop = spec.stops["limits_hip_x"]
     near((stop.low, stop.high), np.radians([-25, 5]), 1.0, 1e-15)
     assert not spec.drives and spec.joints["hip_x"].angle == 0.0
+    beyond = LEG.replace("-25 5", "10 25").replace(' ref="10"', ' ref="10" range="-90 5" limited="true"')
+    spec = load("leg.yaml", imported(beyond, free=True, limits=True))
+    near((spec.joints["hip_x"].angle, spec.joints["hip_y"].angle), np.radians([10, -5]), 1.0, 1e-15)
 
 
 LEFT = {  # what is left out, and what the warning says of it
@@ -95,7 +98,7 @@ LEFT = {  # what is left out, and what the warning says of it
     "friction": (scene('<body><joint name="f" frictionloss=".1"/><geom size=".1"/></body>'), "frictionloss.*joint f"),
     "ball spring": (scene('<body><joint name="b" type="ball" stiffness="1"/><geom size=".1"/></body>'), "springs.*b"),
     "free damping": (
-        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of a free joint.*r",
+        scene('<body><joint name="r" type="free" damping="1"/><geom size=".1"/></body>'), "damping of a free.*joint r",
     ),
     "servo": (scene(rest='<actuator><position name="p" joint="elbow"/></actuator>'), "actuators with.*actuator p"),
     "muscle": (scene(rest='<actuator><muscle name="m" joint="elbow" lengthrange="0 1"/></actuator>'), "actuators"),

@@ -191,6 +191,7 @@ def test_damping_is_a_damper_and_friction_is_told_to_be_left_out():
     machine = described(parts)
     assert [(problem.code, problem.location.line) for problem in machine.left_out] == [("import-left-out", 1)]
     assert "damping_j: {type: damper, joint: j, coefficient: 0.5}" in imported(parts)
+    assert '# Left out:\n# - joint j: friction="0.1" is not taken over\n' in imported(parts)
 
 
 def test_damping_of_what_shifts_and_turns_is_told_to_be_left_out():

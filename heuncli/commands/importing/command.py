@@ -39,9 +39,9 @@ def main(request: ImportRequest) -> int:
         from heuncli.cli.target import require_room  # with NumPy, which is not needed to read a model
 
         require_room(target)
-    require_other_file(target, [request.file])
+    require_other_file(target, [request.file], are="model")
     content = _content(request.file)
-    require_other_file(target, [request.file])  # by what it is, too, now that it is open
+    require_other_file(target, [request.file], are="model")  # by what it is, too, now that it is open
     begin_file()
     root = read_elements(content, request.file)
     reader = reader_of(root, request.file)

@@ -110,7 +110,7 @@ class Closer:
         self.joint(wanted, self.c.told("equality", number), kind, ends, **keys)
 
     def joint(self, wanted: str, told: str, kind: str, ends: tuple[ClosingEnd, ClosingEnd], **keys: Any) -> None:
-        bodies = [self.tree.names[self.frames.owners[end.body]] for end in ends]
+        bodies = [self.holder(end) for end in ends]
         if bodies[0] == bodies[1]:
             self.told.append(f"{told} holds {bodies[0]} to itself, and is left out")
             return
@@ -141,7 +141,11 @@ class Closer:
 
     def point(self, end: ClosingEnd, wanted: str) -> str:
         """A new point of a body of the spec at an end."""
-        return self.points.add(self.tree.names[self.frames.owners[end.body]], wanted, end.place)
+        return self.points.add(self.holder(end), wanted, end.place)
+
+    def holder(self, end: ClosingEnd) -> str:
+        """The body of the spec that an end stands on."""
+        return self.tree.names[self.frames.owners[end.body]]
 
     def connect(self, number: int) -> None:
         data = self.c.model.eq_data[number]

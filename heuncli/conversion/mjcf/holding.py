@@ -15,27 +15,59 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.conversion.mjcf.closings import Closings
+from heuncli.conversion.mjcf.closings import Closings, Coupling
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.tree import COORDINATE, JointTree
+from heuncli.named_tuples import NamedTuple
 
 # Of a rate of 1, what is left of it beside all that follows from others: those that are well open are taken first, so
 # that none is held which another all but determines.
 OPEN = (0.1, 1e-3, 1e-6)
 
 
-def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> tuple[int, ...]:
-    """The numbers of the joints that are held, in MuJoCo's order."""
-    slaves = {coupling.slave for coupling in closings.couplings}
+class HeldJoints(NamedTuple):
+    """joints: the numbers of those that are held, in MuJoCo's order; followed: the couplings that hold others."""
+
+    joints: tuple[int, ...]
+    followed: tuple[Coupling, ...]
+
+
+def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> HeldJoints:
+    """What is held. A joint whose leader nothing holds follows none: it is one among the others."""
+    couplings = [*closings.couplings]
+    while True:
+        joints = _held(c, tree, closings, couplings, q)
+        idle = _without_leader(couplings, joints)
+        if idle is None:
+            return HeldJoints(joints, tuple(couplings))
+        couplings.remove(idle)
+
+
+def _held(c: Compiled, tree: JointTree, closings: Closings, couplings: list[Coupling], q: Any) -> tuple[int, ...]:
+    slaves = {coupling.slave for coupling in couplings}
     movable = [joint for joint, step in tree.of_joint.items() if step.kind in COORDINATE]
     joints = [joint for joint in movable if joint not in slaves]
     if not closings.carried:
         return tuple(joints)
-    leaders = {coupling.master for coupling in closings.couplings}
+    leaders = {coupling.master for coupling in couplings}
     moved = set(_moved(c))
     order = sorted(joints, key=lambda joint: (joint not in leaders, joint not in moved))
     dofs = [int(c.model.jnt_dofadr[joint]) for joint in order]
-    return tuple(sorted(order[k] for k in _independent(_rows(c, closings, q), dofs)))
+    carried = closings.carried | {coupling.equality for coupling in couplings}
+    return tuple(sorted(order[k] for k in _independent(_rows(c, carried, q), dofs)))
+
+
+def _without_leader(couplings: list[Coupling], joints: tuple[int, ...]) -> Coupling | None:
+    """The first coupling that leads back to no joint that is held; None where all do."""
+    led: set[int | None] = {None, *joints}
+    left = couplings
+    while left:
+        rest = [coupling for coupling in left if coupling.master not in led]
+        if len(rest) == len(left):
+            return rest[0]
+        led |= {coupling.slave for coupling in left if coupling.master in led}
+        left = rest
+    return None
 
 
 def _moved(c: Compiled) -> Iterator[int]:
@@ -46,7 +78,7 @@ def _moved(c: Compiled) -> Iterator[int]:
             yield int(c.model.actuator_trnid[number][0])
 
 
-def _rows(c: Compiled, closings: Closings, q: Any) -> Any:
+def _rows(c: Compiled, wanted: frozenset[int], q: Any) -> Any:
     """Rows of the equalities that the spec holds, (rows, rates)."""
     mujoco, model = c.mujoco, c.model
     data = mujoco.MjData(model)
@@ -61,7 +93,6 @@ def _rows(c: Compiled, closings: Closings, q: Any) -> Any:
     finally:
         model.opt.jacobian = kept
     J = np.array(data.efc_J).reshape(-1, int(model.nv))[: int(data.ne)]
-    wanted = closings.carried | {coupling.equality for coupling in closings.couplings}
     return J[[int(number) in wanted for number in np.array(data.efc_id)[: len(J)]]]
 
 

@@ -15,6 +15,7 @@ from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedParameter
 from heuncli.conversion.mjcf.closings import Coupling, left_out, moved
 from heuncli.conversion.mjcf.compiled import Compiled
+from heuncli.conversion.mjcf.holding import HeldJoints
 from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
 from heuncli.conversion.names import called
 from heuncli.conversion.spec_text import number_text, pointed
@@ -39,8 +40,11 @@ class JointLaws(NamedTuple):
 class _Making:
     """The laws of one model while they are made; laws: of the joints of MuJoCo's, in its coordinates."""
 
-    def __init__(self, c: Compiled, tree: JointTree, q: Any, qd: Any, asked: ImportAsked) -> None:
+    def __init__(
+        self, c: Compiled, tree: JointTree, idle: tuple[Coupling, ...], q: Any, qd: Any, asked: ImportAsked
+    ) -> None:
         self.c, self.steps, self.q, self.qd, self.asked = c, tree.of_joint, q, qd, asked
+        self.idle = idle
         self.parameters: list[DescribedParameter] = []
         self.drives: list[DescribedEntry] = []
         self.initial: dict[str, dict[str, str]] = {}
@@ -52,17 +56,25 @@ class _Making:
         """A joint that stands, or starts, where its parameter says."""
         c, step = self.c, self.steps[joint]
         rate = float(self.qd[c.model.jnt_dofadr[joint]])
-        value = float(self.q[c.model.jnt_qposadr[joint]])
+        value = self.start(joint)
         self.parameters.append(DescribedParameter(step.name, value_text(step, value), _limits(c, joint, step)))
         place = _less(step.name, zero(c, joint))
         if self.asked.free:
             self.initial[step.name] = {COORDINATE[step.kind]: place}
-            if rate:
+            if self.qd.any():  # without a rate of its own a body would rather rest in the world than on its parent
                 self.initial[step.name][RATE[step.kind]] = number_text(rate)
             return
         moving = f" {'-' if rate < 0.0 else '+'} {pointed(abs(rate))}*t" if rate else ""
         self.laws[joint] = step.name + moving
         self.drive(joint, place + moving)
+
+    def start(self, joint: int) -> float:
+        """MuJoCo's coordinate at the start; where stops are to hold it, and it lies beyond them, the nearest."""
+        model, value = self.c.model, float(self.q[self.c.model.jnt_qposadr[joint]])
+        if not (self.asked.limits and model.jnt_limited[joint]):
+            return value
+        low, high = (float(limit) for limit in model.jnt_range[joint])
+        return min(max(value, low), high)
 
     def follow(self, coupling: Coupling) -> None:
         """A joint that follows another, by the law of that one."""
@@ -73,10 +85,10 @@ class _Making:
             raise SpecError(
                 Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
             )
-        argument = self.argument(coupling)
+        argument = None if coupling in self.idle else self.argument(coupling)
         if argument is None or coupling.slave in self.driven:
-            twice = "twice, by another equality, too"
-            why = f"{step.name} follows {'a joint that nothing holds' if argument is None else twice}"
+            none = "a joint that nothing else holds"
+            why = f"{step.name} follows {none if argument is None else 'twice, by another equality, too'}"
             self.left_out.append(left_out(c, "equality", coupling.equality, why, HELD_HINT))
             return
         law = moved(coupling.polynomial if argument else coupling.polynomial[:1], argument)
@@ -119,17 +131,18 @@ class _Making:
 def laws_of(
     c: Compiled,
     tree: JointTree,
-    held: tuple[int, ...],
+    held: HeldJoints,
     couplings: tuple[Coupling, ...],
     q: Any,
     qd: Any,
     asked: ImportAsked,
 ) -> JointLaws:
     """The parameters and drives: q, qd are MuJoCo's coordinates and rates at the start. Raises SpecError."""
-    making = _Making(c, tree, q, qd, asked)
-    for joint in held:
+    idle = tuple(coupling for coupling in couplings if coupling not in held.followed)
+    making = _Making(c, tree, idle, q, qd, asked)
+    for joint in held.joints:
         making.hold(joint)
-    for coupling in _in_order(couplings):
+    for coupling in (*_in_order(held.followed), *idle):
         making.follow(coupling)
     return JointLaws(
         tuple(making.parameters),

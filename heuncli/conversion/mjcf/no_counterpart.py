@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli.conversion.described import LEFT_OUT
 from heuncli.conversion.mjcf.compiled import Compiled
-from heuncli.conversion.mjcf.loads import is_tendon_spring
+from heuncli.conversion.mjcf.loads import by_motor, is_tendon_spring
 from heuncli.errors import Problem, SourceLocation
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import listed
@@ -33,13 +33,15 @@ class WithoutCounterpart(NamedTuple):
     hint: str
 
 
-def without_counterpart(c: Compiled, rods: frozenset[int], limits: bool) -> Iterator[Problem]:
+def without_counterpart(c: Compiled, rods: frozenset[int], limits: bool, free: bool) -> Iterator[Problem]:
     """All that is left out of the spec; rods: the tendons that are in it."""
     for row in ROWS:
         yield from _problem(c, row, row.has(c))
     yield from _problem(c, TENDONS, (tendon for tendon in _acting(c) if tendon not in rods))
     if limits:
         yield from _problem(c, BALL_LIMITS, _where(c, c.model.jnt_limited, _of_type(c, "mjJNT_BALL")))
+    if not free:
+        yield from _problem(c, SHARED_WEIGHTS, _shared_weights(c))
     yield from _whole(c)
 
 
@@ -101,8 +103,18 @@ def _curved(c: Compiled) -> list[int]:
 
 
 def _free_damped(c: Compiled) -> list[int]:
-    free = np.flatnonzero(_of_type(c, "mjJNT_FREE"))
-    return [joint for joint in _joints_of_dofs(c, c.model.dof_damping) if joint in free]
+    """Free joints with damping, and balls with one below 0."""
+    free, balls = np.flatnonzero(_of_type(c, "mjJNT_FREE")), np.flatnonzero(_of_type(c, "mjJNT_BALL"))
+    driving = [joint for joint in _joints_of_dofs(c, np.minimum(c.model.dof_damping, 0.0)) if joint in balls]
+    return driving + [joint for joint in _joints_of_dofs(c, c.model.dof_damping) if joint in free]
+
+
+def _shared_weights(c: Compiled) -> Iterator[int]:
+    """The bodies of which some joints take the weight off by their motors, others not."""
+    for body in _rows_with(c.model.body_gravcomp, int(c.model.nbody)):
+        motors = by_motor(c, body)
+        if any(motors) and not all(motors):
+            yield body
 
 
 def _actuators(c: Compiled) -> list[int]:
@@ -192,7 +204,8 @@ ROWS = (
     ),
     WithoutCounterpart(
         "joint", _free_damped,
-        "damping of a free joint is not in a spec", "drag on a point is a force by its velocity: -c*points.tip.vx",
+        "damping of a free joint, or below 0 of a ball, is not in a spec",
+        "drag on a point is a force by its velocity: -c*points.tip.vx",
     ),
     WithoutCounterpart(
         "joint", _curved,
@@ -218,5 +231,10 @@ TENDONS = WithoutCounterpart(
     "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
     "a given length, without limits, friction or armature; left out",
     "rods, springs and actuators run between points",
+)  # fmt: skip
+SHARED_WEIGHTS = WithoutCounterpart(
+    "body", lambda c: (), "weights that motors take off (actuatorgravcomp) in some of the joints that carry them: in "
+    "the spec no joint carries them",
+    "the motor of such a joint takes what its drive tells, and the torque of the weight",
 )  # fmt: skip
 BALL_LIMITS = WithoutCounterpart("joint", lambda c: (), "limits of a ball's turn are not in a spec", "pins have stops")

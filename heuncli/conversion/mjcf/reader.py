@@ -18,7 +18,7 @@ from heuncli.conversion.mjcf.loads import joint_loads, stops, tendon_springs, we
 from heuncli.conversion.mjcf.named_files import named_files
 from heuncli.conversion.mjcf.no_counterpart import without_counterpart
 from heuncli.conversion.mjcf.points import PointsMade
-from heuncli.conversion.mjcf.poses import BodyPose, poses, sides
+from heuncli.conversion.mjcf.poses import sides
 from heuncli.conversion.mjcf.starts import StartKeys, starts_of
 from heuncli.conversion.mjcf.tree import CARRIER, FREE, GROUND, JointTree, TreeStep, tree_of
 from heuncli.conversion.names import Namer, called
@@ -71,23 +71,22 @@ class _Said:
         forces = (
             *joint_loads(c, self.tree, self.names.name),
             *tendon_springs(c, self.closer, self.names.name),
-            *weightless(c, self.frames, self.tree, self.points, gravity, self.names.name),
+            *weightless(c, self.frames, self.tree, self.points, gravity, self.names.name, self.asked.free),
         )
         limits = tuple(stops(c, self.tree, self.laws.driven, self.names.name)) if self.asked.limits else ()
         self.sites()
         left_out = (
             *self.laws.left_out,
             *self.closings.left_out,
-            *without_counterpart(c, self.closings.rods, self.asked.limits),
+            *without_counterpart(c, self.closings.rods, self.asked.limits, self.asked.free),
         )
-        all_poses = poses(c, self.frames, self.tree, self.q, self.qd)
         return DescribedMachine(
             title=_title(c),
             form="MJCF",
             file=c.file,
             sha256=sha256,
             gravity=gravity,
-            bodies=tuple(self.bodies(all_poses)),
+            bodies=tuple(self.bodies()),
             ground=self.points.of(GROUND),
             parameters=self.laws.parameters,
             joints=tuple(self.with_initial(joint) for joint in (*self.joints, *self.closings.joints)),
@@ -130,9 +129,9 @@ class _Said:
             name = self.c.name("site", site) or f"site_{site + 1}"
             self.points.add(self.tree.names[frames.owners[body]], name, frames.place(body, model.site_pos[site]))
 
-    def bodies(self, all_poses: dict[str, BodyPose]) -> Iterator[DescribedBody]:
+    def bodies(self) -> Iterator[DescribedBody]:
         """The bodies of the model, and the carriers between stacked joints."""
-        starts = starts_of(self.c, self.tree, self.closings, self.held, all_poses)
+        starts = starts_of(self.c, self.tree, self.closings, self.held, self.frames, self.q, self.qd)
         owners = {name: body for body, name in self.tree.names.items()}
         for name in dict.fromkeys(step.child for step in self.tree.steps):
             start = starts.get(name, StartKeys({}, {}))
@@ -143,7 +142,15 @@ class _Said:
                     f"between the joints of {its}: no body of the file; its mass, {CARRIER:g} of that, adds nothing"
                 )
                 yield DescribedBody(
-                    name, CARRIER * carried.mass, ZERO, NOTHING, self.points.of(name), (), start.keys, remark
+                    name,
+                    CARRIER * carried.mass,
+                    ZERO,
+                    NOTHING,
+                    self.points.of(name),
+                    (),
+                    start.keys,
+                    remark,
+                    start.notes,
                 )
                 continue
             mass = mass_properties(self.c.model, self.frames, owners[name])
