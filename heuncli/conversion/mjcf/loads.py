@@ -14,13 +14,13 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from heuncli.conversion.described import DescribedEntry
-from heuncli.conversion.mjcf.closings import Closer, pointed, straight
+from heuncli.conversion.mjcf.closings import Closer, straight
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import BodyFrames, vec
 from heuncli.conversion.mjcf.laws import zero
 from heuncli.conversion.mjcf.points import PointsMade
 from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
-from heuncli.conversion.spec_text import number_text
+from heuncli.conversion.spec_text import number_text, pointed
 
 Name = Callable[[str], str]
 
