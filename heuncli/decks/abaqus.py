@@ -39,8 +39,3 @@ def written(cases: LoadCases, names: DeckNames) -> Iterator[str]:
         yield from centrifugal_line(elements, case)
         yield from rotary_line(elements, case)
         yield "*END STEP\n"
-
-
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
-    """Nothing: the cards do all."""
-    return []

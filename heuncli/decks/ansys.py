@@ -63,8 +63,3 @@ def _forces(load: NodeLoad) -> Iterator[str]:
 
 def _vector(command: str, value: Array) -> str:
     return f"{command},{','.join(map(exact, value.tolist()))}\n"
-
-
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
-    """Nothing: the macro does all."""
-    return []

@@ -71,8 +71,3 @@ def _line(row: Sequence[object]) -> str:
     text = StringIO()
     csv.writer(text, lineterminator="\n").writerow(row)
     return text.getvalue()
-
-
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
-    """Nothing."""
-    return []

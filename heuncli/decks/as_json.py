@@ -49,8 +49,3 @@ def _case(cases: LoadCases, case: LoadCase) -> dict[str, Any]:
         "origin": field,
         "sums": {"force": sums.force, "moment": sums.moment, "relative": cases.body.balance(case).relative},
     }  # fmt: skip
-
-
-def notes(cases: LoadCases, names: DeckNames) -> list[str]:
-    """Nothing."""
-    return []

@@ -1,11 +1,11 @@
 """The forms in which load cases are written, a row each: a new one is a module of this folder and a row here.
 
-A module has `written(cases, names)`, the text in pieces, and `notes(cases, names)`, what the user has to know besides.
+A module has `written(cases, names)`, the text in pieces; and `notes(cases, names)` where the user has to know more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib import import_module
 from typing import Any
 
@@ -27,8 +27,8 @@ class Deck(NamedTuple):
 
     def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
         """What the user has to do that no card does, in sentences."""
-        found: list[str] = self._module.notes(cases, names)
-        return found
+        own: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._module, "notes", None)
+        return own(cases, names) if own is not None else []
 
     @property
     def _module(self) -> Any:

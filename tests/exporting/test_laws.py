@@ -10,6 +10,7 @@ import pytest
 
 from heuncli.load_cases.gathered import BALANCED
 from heuncli.load_cases.model import LoadCase, LoadCases, LoadedBody
+from heuncli.load_cases.unit_systems import asked, in_units
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross
 from heuncli.spec.load import load
@@ -142,3 +143,16 @@ def side_of(at: Array, point: Array, cuts: Any, k: int) -> float:
     """On which side of a cut a point lies; in its plane the side of the cut decides."""
     off = float((at - point) @ cuts.n)
     return float(cuts.side[k]) if abs(off) <= cuts.near else off
+
+
+@pytest.mark.parametrize("words", ["N,mm,t", "kN,mm,kg,ms", "lbf,in,slinch"])
+def test_what_balances_does_so_in_any_units(words: str) -> None:
+    """Rates and accelerations are of the unit of time, too: else the parts of the inertia would not fit together."""
+    scene, _ = tree_scene(3)
+    run = run_of(scene)
+    for name in scene["bodies"]:
+        told = cases_of(run, name, AT)
+        own = in_units(told, asked(words))
+        assert any(case.field.angular_acceleration.any() for case in own.cases)
+        for case in own.cases:
+            assert own.body.sums(case).relative <= BALANCED
