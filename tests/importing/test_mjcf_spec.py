@@ -116,6 +116,11 @@ LEFT = {  # what is left out, and what the warning says of it
         scene(rest='<tendon><fixed name="t" stiffness="3"><joint joint="elbow" coef="1"/></fixed></tendon>'),
         "tendons are in a spec where they run straight.*tendon t",
     ),
+    "limited tendon": (
+        scene('<site name="w" pos="0 1 0"/>', '<tendon><spatial name="t" stiffness="3" range="0 2"><site site="tip"/>'
+              '<site site="w"/></spatial></tendon>'),
+        "limits, friction and armature of tendons.*springs and dampers are in the spec: tendon t",
+    ),
     "soft": (
         scene(rest='<equality><joint name="s" joint1="elbow" solref="0.5 1"/></equality>'), "softness.*equality s",
     ),
