@@ -7,12 +7,14 @@ apply, or was not asked for, is absent (an empty dict or None). Knows nothing of
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, TypedDict
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
 
 Array = np.ndarray[tuple[Any, ...], np.dtype[np.float64]]  # the NDArray of numpy.typing, which takes 1 ms
@@ -152,6 +154,25 @@ class Results:
         """The first instant [s] from which on nothing is claimed; None where there is none."""
         return self.accuracy.get("horizon")
 
+    def relative_error(self, kind: str) -> float:
+        """The estimated error of a kind, of its own largest, up to the horizon; not below that of rounding."""
+        error = self.accuracy.get("estimate", Estimate()).get(kind)
+        if not isinstance(error, float) or not math.isfinite(error):
+            return tolerances.WRITTEN
+        if self.horizon is not None:
+            error = min(error, tolerances.CLAIMED)
+        return max(error, tolerances.WRITTEN)
+
+    def errors_of_places(self, size: float) -> dict[tuple[str, str], float]:
+        """The errors of places and angles by kind and unit, in a scene of some size [m]; of large angles of these."""
+        blocks = (*self.coordinates.values(), *self.forces.values())
+        angles = [np.abs(np.asarray(block["angle"])) for block in blocks if "angle" in block]
+        turned = max((float(a.max(initial=0.0, where=np.isfinite(a))) for a in angles), default=0.0)
+        relative = self.relative_error("motion")
+        if self.horizon is not None and self.time[0] >= self.horizon:
+            relative = math.inf
+        return {("motion", "m"): relative * size, ("motion", "rad"): relative * max(turned, 1.0)}
+
 
 class Place(NamedTuple):
     """A place in a run of cuts: distance s [m], side of what acts there, and which of the asked cuts it is, if any."""
@@ -197,3 +218,11 @@ class Magnitudes(NamedTuple):
     size: float
     reach: float
     errors: Mapping[tuple[str, str], float]
+
+    def lost(self) -> dict[str, float]:
+        """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
+        lost = {unit: tolerances.WRITTEN * scale for unit, scale in self.by_unit.items()}
+        far = tolerances.GAP_ROUNDING * self.reach
+        levers = {"N·m": "N", "N·m·s": "N·s"}
+        far_moments = {unit: max(lost[unit], far * self.by_unit[on]) for unit, on in levers.items() if unit in lost}
+        return lost | {"m": max(lost["m"], far)} | far_moments

@@ -2,23 +2,16 @@
 
 from __future__ import annotations
 
-from heuncli.cli.entry import UsageError
 from heuncli.cli.output import say
-from heuncli.errors import Finding, Problem
-from heuncli.report import table_units
 from heuncli.report.table_units import Units
+from heuncli.telling.asked_units import asked_units
 
 TABLES = ("table", "markdown")
 
 
 def units(words: str | None) -> Units:
     """The units that tables show. Raises UsageError."""
-    if words is None:
-        return Units()
-    try:
-        return table_units.asked(words)
-    except Finding as finding:
-        raise UsageError(Problem("bad-option", f"--units {words}: {finding.message}", hint=finding.hint)) from None
+    return asked_units("--units", words)
 
 
 def say_what_stays(words: str | None, form: str, quiet: bool) -> None:

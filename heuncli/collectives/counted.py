@@ -9,7 +9,6 @@ than it would grow by if each of them, also of those counted apart, were 2 e lar
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,6 +24,7 @@ from heuncli.results import Array, Mask
 BINS, MOST_BINS = 10, 1000
 LEAST_SLOPE = 1.0  # below it the equivalent range is no norm, and no material is known
 MOST_SLOPE = 100.0  # R^m then is the largest range alone
+LEAST_CYCLES, MOST_CYCLES = 1e-100, 1e100  # beyond, equivalent ranges leave what numbers hold
 MOST_REPEATS = 10**12
 REFERENCE = 0.0  # the level of 5.1 from which on crossings count upwards
 
@@ -54,7 +54,9 @@ class UnfitCounting(NamedTuple):
 
 
 SLOPES = UnfitCounting("slopes", f"slopes m of N R^m = constant, {LEAST_SLOPE:g} to {MOST_SLOPE:g}", "3,5")
-CYCLES = UnfitCounting("cycles", "of how many cycles equivalent ranges are, a positive number", "1e6")
+CYCLES = UnfitCounting(
+    "cycles", f"of how many cycles equivalent ranges are, {LEAST_CYCLES:g} to {MOST_CYCLES:g}", "1e6"
+)
 CLASSES = UnfitCounting("bins", f"how many classes of ranges and means, 1 to {MOST_BINS}", f"{BINS}, the default")
 REPEATS = UnfitCounting(
     "repeat", "how often the motion is run through, a whole number, or closed", "1000; or closed: for ever"
@@ -77,7 +79,7 @@ class Counting(NamedTuple):
         """What of it cannot be counted by."""
         checks = (
             (all(LEAST_SLOPE <= m <= MOST_SLOPE for m in self.slopes), SLOPES),
-            (self.cycles is None or (math.isfinite(self.cycles) and self.cycles > 0.0), CYCLES),
+            (self.cycles is None or LEAST_CYCLES <= self.cycles <= MOST_CYCLES, CYCLES),
             (1 <= self.bins <= MOST_BINS and self.bins == int(self.bins), CLASSES),
             (1 <= self.repeat <= MOST_REPEATS and self.repeat == int(self.repeat), REPEATS),
         )

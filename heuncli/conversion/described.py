@@ -23,6 +23,7 @@ from heuncli.spec.models import Matrix, Vec
 # What may stand behind a key of a spec: a number, a word or expression, true or false, None (null), tuples and mappings
 # of these.
 Value = Any
+LEFT_OUT = "import-left-out"  # the code of what has no counterpart in a spec
 NOTHING: Mapping[str, Any] = MappingProxyType({})
 
 
@@ -77,7 +78,7 @@ class DescribedMachine(NamedTuple):
     form: what the file is: `URDF`; file: its name; sha256: of its bytes. told: lines at the head of the spec, behind
     that of its origin. remarks: beside the names of blocks (`parameters`, `bodies`, ...), what holds for all of it.
     left_out: what the file asks for and the spec does not say, as problems with their places: warnings, or under
-    --strict an error.
+    --strict an error, and comments at the head of the spec.
     """
 
     title: str

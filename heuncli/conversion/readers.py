@@ -12,7 +12,7 @@ from importlib import import_module
 
 from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedMachine
-from heuncli.conversion.xml_elements import XmlElement
+from heuncli.conversion.xml_elements import BEGINS, XACRO, XmlElement
 from heuncli.errors import Problem, SourceLocation, SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import nearest
@@ -56,7 +56,6 @@ ELSEWHERE = {  # root elements of formats that are not read, and what to do
     "OpenSimDocument": "OpenSim is not read",
     "mujocoinclude": "this is a part of a model: name the file that includes it",
 }
-WRITE = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
 
 
 def reader_of(root: XmlElement, file: str) -> ModelReader:
@@ -67,9 +66,9 @@ def reader_of(root: XmlElement, file: str) -> ModelReader:
     place = SourceLocation(file, root.line, root.column)
     known = {reader.root: reader for reader in READERS}
     meant = nearest(root.tag, known)
-    hint = ELSEWHERE.get(root.tag) or (f"did you mean <{meant}>?" if meant else WRITE)
+    hint = ELSEWHERE.get(root.tag) or (f"did you mean <{meant}>?" if meant else BEGINS)
     if root.tag.startswith("xacro:"):
-        hint = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
+        hint = XACRO
     forms = " or ".join(f"<{reader.root}> ({reader.form})" for reader in READERS)
     message = f"the root element is <{root.tag}>; read are {forms}"
     raise SpecError(Problem("import-format", message, place, hint))

@@ -41,7 +41,7 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield f"# heun run {_word(name)}"
     yield "#"
     yield from map(_comment, machine.told)
-    yield from map(_comment, _left_out(machine.left_out))
+    yield from map(_comment, _left_out(machine))
     yield _comment(f"Made by heun import from {_file(machine.file)}, {machine.form}, sha256")
     yield _comment(machine.sha256)
     yield "heun: 1 # version of the format; plain numbers are SI"
@@ -63,11 +63,11 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
     yield from _block(machine, "analysis", (f"  {key}: {_flow(value)}" for key, value in machine.analysis.items()))
 
 
-def _left_out(problems: Sequence[Problem]) -> Iterator[str]:
-    """What of the file is not in the spec: whose it is, where the message does not say it, and the message."""
-    if problems:
+def _left_out(machine: DescribedMachine) -> Iterator[str]:
+    """What a warning says once, whoever opens the spec later is to know, too."""
+    if machine.left_out:
         yield "Left out:"
-    for problem in problems:
+    for problem in machine.left_out:
         path = problem.location.path if problem.location is not None else ""
         yield f"- {path}: {problem.message}" if path else f"- {problem.message}"
 
@@ -204,6 +204,12 @@ def number_text(value: float) -> str:
     """The fewest digits that mean the number; a whole one without a point."""
     text = repr(float(value))
     return "0" if value == 0.0 else text.removesuffix(".0")
+
+
+def pointed(value: float) -> str:
+    """A number with a point in it: it may stand for one with a unit (manual/format.md, "Parameters")."""
+    text = repr(float(value))
+    return text if "." in text else text.replace("e", ".0e")
 
 
 def _quoted(text: str) -> str:

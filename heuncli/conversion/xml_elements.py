@@ -20,6 +20,8 @@ OF_ENCODING = frozenset({expat.errors.codes[expat.errors.XML_ERROR_UNKNOWN_ENCOD
 ENCODED = "encodings are UTF-8, and UTF-16, ISO-8859-1, US-ASCII where the first line says so: save it as UTF-8"
 POINTER = b"version https://git-lfs"
 BROKEN = "the file is cut off, or was edited by hand near this place"
+XACRO = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
+BEGINS = "a URDF begins with <robot name=...>, a model of MuJoCo's with <mujoco>"
 DOCTYPE = "delete the DOCTYPE and write out what its entities stand for"
 
 
@@ -67,12 +69,14 @@ class _Reading:
 
     def root_of(self, content: bytes) -> XmlElement:
         if not content.strip():
-            raise self.refused("not-xml", "the file is empty", "name a URDF or MJCF file", at=(1, 1))
+            raise self.refused("not-xml", "the file is empty", BEGINS, at=(1, 1))
         try:
             self.parser.Parse(content, True)
         except expat.ExpatError as error:
             what = expat.errors.messages.get(error.code, "not well-formed")
             hint = ENCODED if error.code in OF_ENCODING or not _is_utf8(content) else BROKEN
+            if b"<" not in content[: error.offset + 1]:
+                hint = BEGINS
             if content.startswith(POINTER):
                 hint = "it is a pointer of Git LFS: git lfs pull fetches the file"
             raise self.refused("not-xml", f"not XML: {what}", hint, at=(error.lineno, error.offset + 1)) from None

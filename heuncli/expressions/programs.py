@@ -119,6 +119,10 @@ class Expression:
         """Values at instants, for an expression of time alone."""
         return self.pack.sample(0, self.count, times)
 
+    def course(self, times: Sequence[float]) -> list[array[float]]:
+        """Values, first and second time derivatives at instants, for an expression of time alone; NaN where none is."""
+        return self.pack.course(0, self.count, times)
+
     def bounds(self, begins: Sequence[float], ends: Sequence[float]) -> tuple[array[float], array[float]]:
         """Least and largest values over stretches of time, seen or not, for an expression of time alone."""
         return self.pack.bounds(0, self.count, begins, ends)
@@ -225,6 +229,12 @@ class Pack:
         out = array("d", bytes(8 * len(times)))
         self.expressions.sample(start, count, array("d", times), out)
         return out
+
+    def course(self, start: int, count: int, times: Sequence[float]) -> list[array[float]]:
+        """Values, first and second time derivatives of one program in time alone at instants."""
+        columns = [array("d", bytes(8 * len(times))) for _ in range(3)]
+        jets.derivatives_over(self.expressions, start, count, array("d", times), *columns)
+        return columns
 
     def spans(self, start: int, count: int, begins: Sequence[float], ends: Sequence[float]) -> list[array[float]]:
         """Least and largest value, and least and largest rate, of one program in time alone over stretches of time."""

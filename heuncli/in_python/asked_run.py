@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.errors import SpecError
+from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
 from heuncli.study.ask.study import Study
@@ -41,10 +41,16 @@ class AskedRun:
         self._lock = RLock() if lock is None else lock
 
     @property
+    def times(self) -> Array:
+        """The instants at which it is told, (n_t,) [s]. Read-only: the run's own."""
+        times = self.results.time.view()
+        times.flags.writeable = False
+        return times
+
+    @property
     def horizon(self) -> float | None:
         """The instant [s] from which on nothing is claimed; None where all is."""
-        horizon = self.results.accuracy.get("horizon")
-        return None if horizon is None else float(horizon)
+        return self.results.horizon
 
     @property
     def instants(self) -> Array | None:
@@ -73,7 +79,9 @@ class AskedRun:
             return measured(self.study, words)
 
     def told_at(self, times: Array) -> AskedRun:
-        """The same run at other instants, (n,) ascending. Raises UsageError outside of it."""
+        """The same run at other instants, (n,) ascending. Raises UsageError outside of it, and for none."""
+        if not len(times):
+            raise UsageError(Problem("bad-option", "at: no instants are given", hint="such as at=[0.1, 0.2], in s"))
         with self.asking():
             found = self.study.resample(within_run("at", times.tolist(), self.study.results.time))
         return AskedRun(self.study, found, self._lock)

@@ -10,11 +10,11 @@ from heuncli.drawing.as_file import as_file, form_of
 from heuncli.drawing.layout import laid_out
 from heuncli.drawing.picture import Picture, svg
 from heuncli.errors import Problem, UsageError
-from heuncli.in_python.told import units_of
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.histories import history
 from heuncli.study.ask.measure import MeasureRequest
 from heuncli.study.ask.study import Study
+from heuncli.telling.asked_units import asked_units
 from heuncli.telling.measure import check
 
 
@@ -48,4 +48,4 @@ def diagram_of(study: Study, paths: Sequence[str], over: str | None, units: str 
         raise UsageError(Problem("bad-option", "plot: no path says what is drawn", hint=hint))
     asked = [MeasureRequest("", path) for path in (*paths, *([] if over is None else [over]))]
     check(asked, study.spec, "plot")
-    return Diagram(laid_out(history([Pictured("", study)], paths, units_of(units), over)))
+    return Diagram(laid_out(history([Pictured("", study)], paths, asked_units("units", units), over)))

@@ -29,7 +29,7 @@ def frame_of(run: AskedRun, signals: Sequence[Signal], units: bool, *, named: bo
     import pandas as pd
 
     columns, of_units, errors = {}, {}, {}
-    times = run.results.time
+    times = run.results.time.copy()  # an index may keep it
     for signal in signals:
         if signal.times is None or signal.path == "time":
             continue

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from heuncli.errors import Problem, SpecError, UsageError
+from heuncli.foreign_text import shown
 from heuncli.in_python.asked_run import AskedRun, UnknownPath, distinct
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.series import component_names
@@ -30,6 +31,9 @@ SUMS = "certain_sums"
 def signal_at(run: AskedRun, path: str) -> Signal:
     """The numbers at a path. Raises UnknownPath."""
     results = run.results
+    if not isinstance(path, str):
+        message = f"{shown(repr(path))[:60]} is no path into the results"
+        raise UnknownPath(Problem("unknown-path", message, hint='paths are texts, such as "energy.kinetic"'))
     try:
         return Signal(run, path, find(results, path))
     except SpecError as error:
@@ -85,7 +89,7 @@ class Signal(NDArrayOperatorsMixin):
 
     @property
     def _time(self) -> Array:
-        return self._run.results.time
+        return self._run.times
 
     @property
     def unit(self) -> str:

@@ -10,6 +10,8 @@ import json
 from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NoReturn
 
+import numpy as np
+
 from heuncli.in_python.asked_run import AskedRun, distinct
 from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
@@ -81,8 +83,8 @@ class Solved(Mapping[str, "Signal"]):
 
     @property
     def time(self) -> Array:
-        """The instants at which results are told, (n_t,) [s]."""
-        return self.results.time
+        """The instants at which results are told, (n_t,) [s]. Read-only."""
+        return self._run.times
 
     @property
     def status(self) -> str:
@@ -155,7 +157,7 @@ class Solved(Mapping[str, "Signal"]):
         """
         from heuncli.telling.collectives import collective
 
-        of = (float(slopes),) if isinstance(slopes, int | float) else tuple(slopes)
+        of = tuple(np.atleast_1d(np.asarray(slopes, dtype=np.float64)).tolist())
         with self._run.asking():
             return collective(self.study, path, slopes=of, cycles=cycles, bins=bins, repeat=repeat, closed=closed)
 

@@ -9,9 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from heuncli.client_report.as_html import element, escaped
-from heuncli.errors import Finding, Problem, UsageError
+from heuncli.errors import Problem, UsageError
 from heuncli.records import replace
-from heuncli.report import table_units
 from heuncli.report.heading import heading, write_heading
 from heuncli.report.labels import labels_of
 from heuncli.report.page_width import fit
@@ -21,6 +20,7 @@ from heuncli.results import Array
 from heuncli.results_schema import BLOWS, EVENTS, REPORT_OF
 from heuncli.study.ask.study import Study
 from heuncli.study.model.selection import Selection
+from heuncli.telling.asked_units import asked_units
 from heuncli.telling.selection import Only, only, selected, told_by_default
 from heuncli.telling.tables import TablesAsked, tables_of
 
@@ -35,22 +35,12 @@ STYLE = (
 )
 
 
-def units_of(words: str | None) -> Units:
-    """The units in which tables and diagrams show SI units. Raises UsageError."""
-    if words is None:
-        return Units()
-    try:
-        return table_units.asked(words)
-    except Finding as finding:
-        raise UsageError(Problem("bad-option", f"units {words}: {finding.message}", hint=finding.hint)) from None
-
-
 def text_of(study: Study, at: Array | None, units: str | None, words: str | Sequence[str] | None) -> str:
     """Heading and tables as `heun run` writes them into a file; at (n,): the instants, None for the extremes."""
     asked = None
     if words is not None:
         asked = only(words.split(",") if isinstance(words, str) else words, "only", "study.measure")
-    tables = _tables(study, at, units_of(units), asked)
+    tables = _tables(study, at, asked_units("units", units), asked)
     lines = [plain(part, WIDTH) for table in tables for part in fit(table, WIDTH)]
     return write_heading(study.results) + "".join("\n" + text for text in lines)
 

@@ -412,6 +412,27 @@ def derivatives(
     return found.value, found.rate, found.second
 
 
+def derivatives_over(
+    expressions: Expressions,
+    start: cython.int,
+    count: cython.int,
+    times: cython.double[::1],
+    values: cython.double[::1],
+    rates: cython.double[::1],
+    seconds: cython.double[::1],
+) -> None:
+    """Value, first and second time derivative of one program in time alone at many instants, into three columns."""
+    i: cython.Py_ssize_t
+    expressions.check(start, count)
+    if not len(times) == len(values) == len(rates) == len(seconds):
+        raise ValueError("as many values and derivatives as instants")
+    for i in range(len(times)):
+        found: Jet = jet(cython.address(expressions.programs), Program(start, count), times[i])
+        values[i] = found.value
+        rates[i] = found.rate
+        seconds[i] = found.second
+
+
 def gradient(expressions: Expressions, start: cython.int, count: cython.int, x: Sequence[float]) -> list[float]:
     """Derivatives of one program in all its variables, at x; on the branches held, where they are."""
     i: cython.Py_ssize_t

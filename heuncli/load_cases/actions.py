@@ -77,7 +77,7 @@ def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
         on = attachments(body, states, [action])
         by = [OUTSIDE] * len(on) if action.spread else _exerted_by(mechanism, action, body)
         for own, other in zip(on, by, strict=True):
-            yield OneAction(_kind(action, spec), action.name, other, own, bool(action.spread))
+            yield OneAction(_kind(action, spec, bool(recovery.given)), action.name, other, own, bool(action.spread))
 
 
 def _exerted_by(mechanism: Mechanism, action: Action, body: int) -> list[str]:
@@ -92,11 +92,11 @@ def _name(mechanism: Mechanism, body: int) -> str:
     return "ground" if body == GROUND else mechanism.bodies[body].name
 
 
-def _kind(action: Action, spec: Spec) -> str:
+def _kind(action: Action, spec: Spec, struck: bool) -> str:
     """The word for an action: that of its type in the spec, of what is no load its own."""
     if action.kind != "load":
         return action.kind
-    return spec.forces[action.name].type if action.name in spec.forces else "impulse"
+    return "impulse" if struck else spec.forces[action.name].type  # a force may have the name of a blow
 
 
 def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> Iterator[PointAction]:
@@ -158,7 +158,11 @@ def _tidy(actions: Sequence[PointAction]) -> tuple[PointAction, ...]:
     found = list(together.values())
     force, moment, reach = (_largest(found, of) for of in ("force", "moment", "at"))
     least = ROUNDING * force, ROUNDING * max(moment, force * reach)
-    kept = [replace(one, force=_cut(one.force, least[0]), moment=_cut(one.moment, least[1])) for one in found]
+    # none of it the scene's own arrays: whoever is given a case may change it
+    kept = [
+        replace(one, at=one.at.copy(), force=_cut(one.force, least[0]), moment=_cut(one.moment, least[1]))
+        for one in found
+    ]
     return tuple(one for one in kept if one.force.any() or one.moment.any() or one.kind == "joint")
 
 

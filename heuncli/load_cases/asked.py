@@ -88,7 +88,7 @@ def measures(asked: Sequence[AskedInstant]) -> list[MeasureRequest]:
 def taken(asked: Sequence[AskedInstant], study: Study) -> list[TakenInstant]:
     """When the cases are taken. Raises NotOneNumber, SolveError beyond the horizon."""
     found = [one for word in asked for one in _taken(word, study)]
-    horizon = study.results.accuracy.get("horizon")
+    horizon = study.results.horizon
     for one in found:
         if horizon is not None and one.time >= horizon:
             raise SolveError(Problem("beyond-horizon", SO_LATE.format(one.name, horizon), hint=SHORTEN))
@@ -121,7 +121,7 @@ def _within(asked: AskedInstant, study: Study) -> float:
 def _of_extreme(asked: AskedInstant, study: Study) -> float:
     """When a number of the results is at its extreme, searched between the samples too."""
     (measure,) = measures([asked])
-    horizon = lost_from(measure._replace(how=measure.how), study)
+    horizon = lost_from(measure, study)
     if horizon is not None:
         raise SolveError(Problem("beyond-horizon", SO_LATE.format(asked.word, horizon), hint=SHORTEN))
     try:
@@ -151,7 +151,7 @@ def _blows(asked: AskedInstant, study: Study) -> Iterator[TakenInstant]:
 
 def _known(blows: Sequence[Block], word: str) -> str:
     if not blows:
-        return "it has none"
+        return "nothing is struck in it: times take cases, such as --at last"
     names = dict.fromkeys(name for block in blows for name in block["names"])
     listed = ", ".join(f"{k} ({' and '.join(block['names'])})" for k, block in enumerate(blows[:5]))
     more = f" ... {len(blows) - 1}" if len(blows) > 5 else ""

@@ -9,14 +9,16 @@ from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from heuncli.errors import Problem, SolveError
+from heuncli.errors import Problem, SolveError, UsageError
 from heuncli.load_cases.actions import actions_on, fields_of
 from heuncli.load_cases.asked import AskedInstant, TakenInstant, taken
 from heuncli.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.mechanism.model import Mechanism
+from heuncli.records import replace
 from heuncli.results import Array, Block, CertainSum
 from heuncli.results_schema import BLOWS
 from heuncli.study.ask.study import Study
+from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery, certain_sums
 from heuncli.study.model.selection import Selection
 
@@ -24,6 +26,7 @@ BALANCED = 1e-9  # of the largest: loads of one instant are answered together, a
 MOST_SUMS = 4  # that are named in a refusal
 CHOOSE = "--least-norm or a stiffness of the joints chooses a split"
 IN_PLANE = "; the scene moves in the plane: space: planar leaves out what is across it"
+ALL_JOINTS = Selection(frozenset({"joints"}))
 LOOSE = "heun explain open tells how to draw what the machine leaves loose"
 
 
@@ -35,13 +38,20 @@ def needed_for(body: str, joints: Iterable[str], blows: bool) -> Selection:
 
 
 def gathered(study: Study, body: str, asked: Sequence[AskedInstant]) -> LoadCases:
-    """The load cases of a body. Raises SolveError for one that is open, or does not balance, and as `taken` does."""
+    """The load cases of a body.
+
+    Raises SolveError for one that is open, or does not balance, UsageError of a body that was not solved for, and as
+    `taken` does.
+    """
     mechanism = study.setup.scene.mechanism
-    index = next(i for i, one in enumerate(mechanism.bodies) if one.name == body)
+    index = next((i for i, one in enumerate(mechanism.bodies) if one.name == body), None)
+    if index is None:
+        message = f"{body}: nothing that this run was asked for depends on it, so it was left out"
+        raise UsageError(Problem("bad-option", message, hint="solve the whole scene: without only="))
     instants = taken(asked, study)
     cases = dict([*_of_instants(study, index, instants), *_of_blows(study, index, instants)])
     own, results = mechanism.bodies[index], study.results
-    loaded = LoadedBody(own.name, own.mass, own.center, own.inertia, mechanism.planar)
+    loaded = LoadedBody(own.name, own.mass, own.center.copy(), own.inertia.copy(), mechanism.planar)  # the reader's own
     for case in cases.values():
         require_balance(loaded, case)
     errors = results.accuracy.get("estimate", {})
@@ -63,11 +73,10 @@ def _of_instants(study: Study, body: int, instants: Sequence[TakenInstant]) -> I
     if not own:
         return
     times = np.array(sorted({one.time for one in own}))
-    if study.of_one_instant:
-        recovery, joints = study.recovery, study.results.joints
-    else:
-        recovery = study.recovery_at(times, frozenset({"joints"}))
-        joints = study.reports_of(recovery, frozenset({"joints"})).joints
+    reports = ALL_JOINTS.reports
+    recovery = study.recovery if study.of_one_instant else study.recovery_at(times, reports)
+    recovery = _telling_joints_on(body, recovery)
+    joints = study.reports_of(recovery, reports).joints
     require_unique(recovery, body, joints, recovery.recovered.times)
     actions, fields = actions_on(recovery, study.spec, body), fields_of(recovery, body)
     for one in own:
@@ -80,14 +89,22 @@ def _of_blows(study: Study, body: int, instants: Sequence[TakenInstant]) -> Iter
     own = [one for one in instants if one.blow is not None]
     if not own or study.struck is None:
         return
-    recovery = study.struck.recovery
+    recovery = _telling_joints_on(body, study.struck.recovery)
     wanted = np.array([one.blow for one in own])
-    joints = {name: _at(block, wanted) for name, block in study.struck.shown["joints"].items()}
+    joints = {name: _at(block, wanted) for name, block in blocks(recovery, ALL_JOINTS.reports)["joints"].items()}
     require_unique(recovery, body, joints, np.array([one.time for one in own]))
     actions, fields = actions_on(recovery, study.spec, body), fields_of(recovery, body)
     for one in own:
         assert one.blow is not None
         yield one, LoadCase(one.name, one.time, actions[one.blow], fields[one.blow], struck=True)
+
+
+def _telling_joints_on(body: int, recovery: Recovery) -> Recovery:
+    """The recovery, telling the joints on a body also where the run was asked for others, or for none."""
+    setup = recovery.setup
+    if setup.asked.whole("joints") or setup.asked.of("joints").issuperset(joints_on(setup.scene.mechanism, body)):
+        return recovery
+    return recovery.with_cuts(replace(setup, asked=ALL_JOINTS))
 
 
 def _at(block: Block, which: Array) -> Block:

@@ -97,7 +97,7 @@ def _case(case: LoadCase, system: UnitSystem) -> LoadCase:
         f.origin / acceleration, f.gravity / acceleration, f.angular_velocity / rate, f.angular_acceleration / turn
     )
     actions = tuple(_action(action, force, system) for action in case.actions)
-    return replace(case, time=case.time, actions=actions, field=field)
+    return replace(case, actions=actions, field=field)
 
 
 def _action(action: PointAction, force: float, system: UnitSystem) -> PointAction:

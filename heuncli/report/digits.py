@@ -18,12 +18,11 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli import tolerances
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.labels import Labels
 from heuncli.report.series import Series, walk, walk_impulse
 from heuncli.report.table_units import Units
-from heuncli.results import Array, Estimate, Magnitudes, Results
+from heuncli.results import Array, Magnitudes, Results
 from heuncli.results_schema import BY_CAUSE, KIND_OF, SHARES, kind_of_error
 
 DIGITS = 6
@@ -94,15 +93,13 @@ class Certainty(NamedTuple):
 def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
     """The errors of a run: as its check run found them, else from its estimates and the largest of each kind."""
     scales = scales_of(results, labels)
-    errors = {key: _relative(results, KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
+    errors = {key: results.relative_error(KIND_OF.get(key[0], key[0])) * scale for key, scale in scales.items()}
     for kind in LOADS:
         for own in (kind, f"{kind} {BY_CAUSE}"):
-            errors |= _of_wrench(own, _relative(results, kind), scales, of.size)
+            errors |= _of_wrench(own, results.relative_error(kind), scales, of.size)
     errors |= of.errors
-    motion = _relative(results, "motion")
-    errors["motion", "m"] = motion * of.size
-    errors["motion", "rad"] = motion * max(scales.get(("motion", "rad"), 0.0), 1.0)
-    lost = lost_by_rounding(of)
+    errors |= results.errors_of_places(of.size)
+    lost = of.lost()
     load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
     if load > 0.0:  # stresses are in proportion to what makes them
         stress = scales.get(("sections", "Pa"), 0.0) / load
@@ -134,9 +131,9 @@ def is_of_load(kind: str, unit: str) -> bool:
 
 def error_of_load(results: Results, labels: Labels, of: Magnitudes, kind: str, unit: str) -> float:
     """The error of one kind of loads, as `certainty` has it where there is no horizon."""
-    own = _of_wrench(kind, _relative(results, kind), scales_of(results, labels, kind), of.size)
+    own = _of_wrench(kind, results.relative_error(kind), scales_of(results, labels, kind), of.size)
     found = {**own, **of.errors}
-    return max(found[kind, unit], lost_by_rounding(of).get(unit, 0.0))
+    return max(found[kind, unit], of.lost().get(unit, 0.0))
 
 
 def with_units(certain: Certainty, units: Units) -> Certainty:
@@ -180,25 +177,6 @@ def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units
     shown, size = units.of("m")
     own = {("axis", "1"): relative, ("axis", shown): relative * lever * size}
     return certain._replace(errors={**certain.errors, **own})
-
-
-def lost_by_rounding(of: Magnitudes) -> dict[str, float]:
-    """What is lost by rounding, by unit; far from the origin places, and so levers, have fewer digits."""
-    lost = {unit: tolerances.WRITTEN * scale for unit, scale in of.by_unit.items()}
-    far = tolerances.GAP_ROUNDING * of.reach
-    levers = {"N·m": "N", "N·m·s": "N·s"}
-    far_moments = {unit: max(lost[unit], far * of.by_unit[on]) for unit, on in levers.items() if unit in lost}
-    return lost | {"m": max(lost["m"], far)} | far_moments
-
-
-def _relative(results: Results, kind: str) -> float:
-    """The estimated error of a kind, relative to its own largest, up to the horizon; not below that of rounding."""
-    error = results.accuracy.get("estimate", Estimate()).get(kind)
-    if not isinstance(error, float) or not math.isfinite(error):
-        return tolerances.WRITTEN
-    if results.horizon is not None:
-        error = min(error, tolerances.CLAIMED)
-    return max(error, tolerances.WRITTEN)
 
 
 def largest(values: Array) -> float:

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from heuncli.spec.named_files import NamedFiles
     from heuncli.spec.tables import Wrong
 
+HOW_IMPORTED = "heun import makes a spec of a robot in URDF, or a model of MuJoCo's"
 PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
 
 
@@ -109,9 +110,9 @@ class Loading:
         if type(source.data) is not dict:
             kind = kind_of(source.data) if type(source.data) is not str else "a text"  # of whatever file: not told
             message = f"a spec is a mapping, this is {kind}"
-            raise SpecError(
-                *self.problems, Problem("not-a-scene", message, source.location(()), "it starts with 'heun: 1'")
-            )
+            is_xml = type(source.data) is str and source.data.startswith("<")
+            hint = HOW_IMPORTED if is_xml else "it starts with 'heun: 1'"
+            raise SpecError(*self.problems, Problem("not-a-scene", message, source.location(()), hint))
         without_empty = {k: {} if v is None and k in (*NAMED, "ground") else v for k, v in source.data.items()}
         settings, problems = of_words(overrides) if isinstance(overrides, Mapping) else ([*overrides], [])
         settings = [*(settings_of(case, source) if case is not None else ()), *settings]

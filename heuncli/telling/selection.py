@@ -12,7 +12,7 @@ from heuncli.errors import Problem, UsageError
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.report.page import TABLE_DEFAULT
-from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, SHARES, quantity, with_shared
+from heuncli.results_schema import BLOWS, REPORT_OF, REPORTS, ROWS, SHARES, quantity, with_shared
 from heuncli.spec.models import Spec
 from heuncli.study.model.selection import EntryKeys, Selection, entries_of, entry_at
 from heuncli.telling.asked_values import choice
@@ -83,8 +83,15 @@ def _meant(path: str, known: Mapping[EntryKeys, Mapping[str, Any]], option: str)
     """What may be meant by a path that begins with no block."""
     from heuncli.path_hints import meant  # only on the way to an error
 
+    near = nearest(path, (*REPORTS, SHARES))
+    if "." not in path and not near:
+        rows = (row.path.split(".") for row in ROWS)
+        told = next((REPORT_OF[words[0]] for words in rows if path in words[2:] and words[0] in REPORT_OF), None)
+        if told is not None:
+            return f"{path} is told in {told}: {option} {told}"
+    elif "." not in path:
+        return f"did you mean {near}?"
     entry = meant(path, lambda words: entry_at(words, known)[0] is not None)
     if entry is not None:
         return f"did you mean {'.'.join(entry_at(entry.split('.'), known)[0] or ())}?"
-    near = nearest(path, (*REPORTS, SHARES))
     return f"did you mean {near}?" if near else f"such as {option} foundation,joints.NAME"

@@ -2,8 +2,9 @@
 
 Breadth-first from the ground, so that paths stay short. A joint whose coordinate is driven, named in an expression or
 limited by a stop is never cut. Next come the joints of a body without a mass to speak of, which only passes on what
-they carry: cut off from what is behind it, roundings would throw it about. Then what leaves nothing free, so that
-bodies welded together hang on each other and only circles of welds are cut. Joints that leave a thin body free to
+they carry: cut off from what is behind it, roundings would throw it about. Not so where all of them leave it free to
+spin, as a link on two balls: what it passes on does not turn it. Then what leaves nothing free, so that bodies welded
+together hang on each other and, but for those, only circles of welds are cut. Joints that leave a thin body free to
 turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
 one layer those that make most conditions are kept.
 `line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on
@@ -13,7 +14,7 @@ six freedoms of its own.
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 import numpy as np
 
@@ -75,11 +76,12 @@ def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
 def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> dict[int, list[int]]:
     """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written."""
     joints = mechanism.joints
-    null, light = null_axes(mechanism), weightless(mechanism)
+    null = null_axes(mechanism)
+    between = passing_on(mechanism, null)
 
     def urgency(k: int) -> tuple[bool, bool, bool, bool, int, int, int]:
         joint = joints[k]
-        passes_on = not light.isdisjoint((joint.a, joint.b))
+        passes_on = not between.isdisjoint((joint.a, joint.b))
         spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
         layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
         return k not in kept, not passes_on, not kind.is_rigid, spins, layer, -kind.rows, k
@@ -118,10 +120,19 @@ def null_axes(mechanism: Mechanism) -> dict[int, Array]:
     return {int(i): axes[i][:, none[i]].T for i in np.flatnonzero(none.any(axis=1))}
 
 
-def weightless(mechanism: Mechanism) -> frozenset[int]:
-    """The bodies that are no mass beside the heaviest: those between the joints of an imported stack."""
-    heaviest = max((body.mass for body in mechanism.bodies), default=0.0)
-    return frozenset(k for k, body in enumerate(mechanism.bodies) if body.mass < tolerances.NO_MASS * heaviest)
+def passing_on(mechanism: Mechanism, null: Mapping[int, Array]) -> frozenset[int]:
+    """The bodies that are no mass beside the heaviest, and that some joint of theirs keeps from spinning idly.
+
+    null: the axes without inertia of each body that has any, as of `null_axes`. Such bodies stand between the joints of
+    an imported stack.
+    """
+    least = tolerances.NO_MASS * max((body.mass for body in mechanism.bodies), default=0.0)
+    return frozenset(
+        end
+        for joint in mechanism.joints
+        for end in {joint.a, joint.b} - {GROUND}
+        if mechanism.bodies[end].mass < least and not (end in null and _leaves(joint, end == joint.b, null[end]))
+    )
 
 
 def _leaves(joint: Joint, to: bool, null: Array) -> bool:

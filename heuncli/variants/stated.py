@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from heuncli import tolerances
 from heuncli.records import replace
-from heuncli.report.digits import certainty, error_of_load, is_of_load, lost_by_rounding
+from heuncli.report.digits import certainty, error_of_load, is_of_load
 from heuncli.report.labels import labels_for_units
 from heuncli.report.table_units import Units
 from heuncli.results_schema import BLOWS, CUT, EVENTS, MAGNITUDES, kind_of_error, quantity
@@ -60,8 +60,8 @@ def _of_unit(keys: tuple[str, ...], unit: str, study: Study) -> float | None:
     """The error of numbers of a kind and unit."""
     kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
     of = study.load_magnitudes if is_of_load(kind, unit) else study.magnitudes
-    if (kind, unit) in of.errors and kind != "motion":  # of the motion certainty() knows the largest angle, too
-        return max(of.errors[kind, unit], lost_by_rounding(of).get(unit, 0.0))
+    if (kind, unit) in of.errors:
+        return max(of.errors[kind, unit], of.lost().get(unit, 0.0))
     labels = replace(labels_for_units(study.spec), units=SI)
     if is_of_load(kind, unit) and study.results.horizon is None:
         return error_of_load(study.results, labels, of, kind, unit) or None

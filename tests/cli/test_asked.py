@@ -261,6 +261,8 @@ def test_entries_are_asked_for_by_their_paths(heun: Heun) -> None:
     ("foundation.force", "say foundation; --measure prints single numbers"),
     ("foundation.axes", "did you mean foundation.axis?"),
     ("nothing.else", "known: motion"),
+    ("joint", "did you mean joints?"),
+    ("drive", "drive is told in joints: --only joints"),
 ])  # fmt: skip
 def test_what_is_no_entry_is_refused(heun: Heun, words: str, told: str) -> None:
     done = heun("run", "hanging.yaml", "--only", words)

@@ -258,14 +258,16 @@ def test_options_that_mean_nothing_are_refused_all_at_once(heun: Heun) -> None:
     assert "not with --measure, --all" in done.stderr
 
 
-def test_python_asks_alike() -> None:
+@pytest.mark.parametrize("cycles", [math.nan, 1e-308, math.inf])
+def test_python_asks_alike(cycles: float) -> None:
     """The door gives the same object, and refuses ways to count that are none, by their names."""
     solved = heuncli.solve(text=SHAKER.format(TWO_TONES))
     one = solved.collective(SIDE, slopes=[3], repeat=2)
     other = collective(shaker(TWO_TONES), SIDE, slopes=(3.0,), repeat=2)
     assert one.equivalents == other.equivalents
+    assert solved.collective(SIDE, slopes=np.int64(3), repeat=2).equivalents == one.equivalents
     with pytest.raises(heuncli.UsageError) as caught:
-        solved.collective(SIDE, slopes=[0.5], cycles=math.nan, bins=0, repeat=0)
+        solved.collective(SIDE, slopes=[0.5], cycles=cycles, bins=0, repeat=0)
     assert [problem.message.split()[0] for problem in caught.value.problems] == ["slopes", "cycles", "bins", "repeat"]
 
 

@@ -58,6 +58,7 @@ REFUSED = [
     ("swinging.yaml --at peak:joints.pivto.force", 2, "unknown-path", "did you mean pivot?"),
     ("swinging.yaml --at 1.5", 2, "bad-option", "the run has from 0 to 1 s"),
     ("swinging.yaml --at impulse:0", 2, "bad-option", "there is no such blow"),
+    ("swinging.yaml --at last --case all", 2, "bad-option", "a deck is of one load case"),
     ("hanging.yaml --units N,mm,kg", 2, "bad-option", "--units N,mm,t"),
     ("hanging.yaml --units N,mm", 2, "bad-option", "without a mass"),
     ("hanging.yaml -o loads.inp", 2, "bad-option", "--format calculix or --format abaqus"),

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
+import heuncli
 from heuncli.results_schema import REPORTS
 from heuncli.spec.load import load
-from heuncli.study.ask.measure import MeasureRequest, Peak
+from heuncli.study.ask.measure import MeasureRequest, Peak, stated_error
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
@@ -35,6 +37,18 @@ def test_unit_and_error_are_those_of_the_tables(scene: object) -> None:
         assert math.isclose(error or 0.0, kept.error, rel_tol=1e-12), path
 
 
+def test_the_error_of_a_place_covers_a_coarse_run() -> None:
+    """A pendulum to six digits: the door, curves and the search of extremes know it no better than that."""
+    solved, close = (heuncli.solve(text=PENDULUM, tolerance=tolerance) for tolerance in (1e-6, 1e-12))
+    for path, unit in (("coordinates.pivot.angle", "rad"), ("points.bob.p.position", "m")):
+        off = float(np.abs(solved[path].values - close[path].values).max())
+        told = solved[path].error
+        assert solved[path].unit == unit
+        assert 1e-9 < off <= told < 1e-4
+        assert stated_error(solved.study, solved.study.numbers(path).keys) == told
+        assert solved.measure(f"max {path}").error == told
+
+
 @pytest.mark.heavy
 def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
     """The least acceleration, −1.2 g, lies in the flat pose, around which the search looks at nothing."""
@@ -46,6 +60,14 @@ def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
     assert apart.value is not None and apart.error is not None
 
 
+PENDULUM = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bob: {mass: 1, center: [0, 0, -1], inertia: [0, 0, 0], points: {O: [0, 0, 0], p: [0, 0, -1]}}}
+joints: {pivot: {type: pin, from: ground.O, to: bob.O, axis: [0, 1, 0], initial: {angle: 2 rad}}}
+analysis: {duration: 20, samples: 41}
+"""
 HANGING = """\
 heun: 1
 gravity: [0, 0, -9.81]

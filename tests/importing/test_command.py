@@ -55,6 +55,7 @@ def test_the_model_is_not_written_over(heun, arm):
 def test_strict_writes_nothing_where_something_is_left_out(heun, folder):
     easy = heun("import", "rubbed.urdf")
     assert easy.returncode == 0 and 'friction="0.1" is not taken over [import-left-out]' in easy.stderr
+    assert '# Left out:\n# - joint shoulder: friction="0.1" is not taken over\n' in easy.stdout
     assert not heun("import", "rubbed.urdf", "--quiet").stderr
     strict = heun("import", "rubbed.urdf", "--strict", "-o", "r.yaml")
     assert strict.returncode == 1 and not strict.stdout and not (folder / "r.yaml").exists()

@@ -52,6 +52,13 @@ def test_refused_with_a_place(name):
     assert problem.hint and len(str(problem)) < 1000
 
 
+@pytest.mark.parametrize("name", ["yaml", "empty", "zeros"])
+def test_of_what_is_no_xml_at_all_is_said_what_is_read(name):
+    with pytest.raises(SpecError) as refused:
+        imported(REFUSED[name][0])
+    assert refused.value.problems[0].hint.startswith("a URDF begins with <robot")
+
+
 def test_more_elements_than_are_read_are_refused_while_they_come(monkeypatch):
     monkeypatch.setattr(xml_elements, "MOST_ELEMENTS", 1000)
     with pytest.raises(SpecError, match="more than 1,000 elements") as refused:

@@ -1,4 +1,7 @@
-"""The README's table of published cases, as `heun check --references` tells them: solved, where it is asked for."""
+"""Tables of the published cases, as `heun check --references` tells them: how near heun comes, and of what source.
+
+The cases are solved, where the first is asked for.
+"""
 
 from __future__ import annotations
 
@@ -15,8 +18,11 @@ def row(name: str) -> tuple[str, ...]:
     case, tables = case_of(name), compared_case(name)
     numbers = [one for table in tables for one in table.numbers]
     told = (str(len(numbers)), kinds_of(case), digits_of(numbers), *farthest(tables))
-    return f"`{name}`", f"{case.about}: {case.source}", *told
+    return f"`{name}`", case.about, *told
 
 
-HEAD = ("case", "what, and its source", "numbers", "which are", "digits", "last digits", "of the largest")
+HEAD = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
 PROOF = Table(README, "Proof", HEAD, [row(name) for name in names()])
+SOURCES = Table(
+    "references", "On your machine", ("case", "source"), [(f"`{name}`", case_of(name).source) for name in names()]
+)

@@ -65,8 +65,10 @@ def test_a_vector_over_the_instants(study: heuncli.Solved) -> None:
     assert np.array_equal(force.times, study.time) and not force.open.any() and not force.beyond.any()
     assert 0.0 < force.error < 1e-6
     assert np.array_equal(study["joints.pivot.force.z"], force[:, 2])
-    with pytest.raises(ValueError, match="read-only"):
-        force.values[0, 0] = 1.0
+    for numbers in (force.values, force.times, study.time):
+        assert numbers is not None
+        with pytest.raises(ValueError, match="read-only"):
+            numbers[0] = 1.0
 
 
 def test_it_is_an_array_to_numpy(study: heuncli.Solved) -> None:
@@ -163,6 +165,11 @@ def test_what_was_left_out_is_named(study: heuncli.Solved) -> None:
     assert [*some.results.bodies] == [] and np.array_equal(some["joints.pivot.force"], study["joints.pivot.force"])
     with pytest.raises(heuncli.UnknownPath, match="only= leave them out"):
         some["bodies.bar.center"]
+    assert 3 not in some and "joints.pivot.force" in some
+    with pytest.raises(heuncli.UnknownPath, match="3 is no path"):
+        some[3]  # type: ignore[index]
+    with pytest.raises(heuncli.UsageError, match="no instants"):
+        some.at([])
 
 
 def test_by_cause_and_other_axes() -> None:

@@ -8,6 +8,7 @@ from array import array
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -145,6 +146,15 @@ def test_derivatives_are_those_of_complex_steps(text: str, t: float) -> None:
     h = 1e-3  # Richardson on central differences: the error is of order h**4
     near, far = (slope(t + h) - slope(t - h)) / (2 * h), (slope(t + 2 * h) - slope(t - 2 * h)) / (4 * h)
     assert second == pytest.approx((4 * near - far) / 3, rel=1e-7, abs=1e-7)
+
+
+def test_a_course_is_the_derivatives_at_its_instants() -> None:
+    times = [-0.5, 0.0, 0.3, 0.71]
+    for text in (*SMOOTH, "t*sqrt(t)"):
+        expression = read(text)
+        one_by_one = [expression.derivatives(t) for t in times]
+        np.testing.assert_array_equal(np.transpose(expression.course(times)), one_by_one)
+    assert math.isnan(read("sqrt(t)").course(times)[0][0])
 
 
 def compile_complex(text: str) -> str:

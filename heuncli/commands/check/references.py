@@ -55,7 +55,7 @@ def _chosen(request: CheckRequest) -> Sequence[str]:
     known = names()
     for name in request.paths:
         if name not in known:
-            hint = f"{did_you_mean(name, known, 'cases')}; heun check --references tells them all"
+            hint = did_you_mean(name, known, "cases")
             raise UsageError(Problem("bad-option", f"--references {name}: there is no such published case", hint=hint))
     return tuple(dict.fromkeys(request.paths)) or known
 

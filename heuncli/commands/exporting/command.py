@@ -26,6 +26,7 @@ from heuncli.records import replace
 from heuncli.report.plurals import count
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
+from heuncli.spec.names import ALL_CASES
 from heuncli.study.ask.study import Study
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
@@ -52,6 +53,7 @@ def main(request: ExportRequest) -> int:
     over = positive("--blow-over", request.blow_over)
     names = _deck_names(request)
     asked = parse(request.at) if request.at is not None else []
+    _require_one_case(request.case)
     spec = load(request.spec, overrides=overrides(request.set), checking=False, case=request.case)
     require_other_file(request.output, [request.spec])
     body = _body(request.body, spec)
@@ -69,6 +71,12 @@ def main(request: ExportRequest) -> int:
         _say_sums(written, form, names)
     warn(spec, study.results, request.quiet, later=study.later_warnings)
     return 0
+
+
+def _require_one_case(case: str | None) -> None:
+    if case == ALL_CASES:
+        message = "--case all: a deck is of one load case of the spec"
+        raise UsageError(Problem("bad-option", message, hint="--case NAME, and a file for each"))
 
 
 def form_of(request: ExportRequest) -> str:

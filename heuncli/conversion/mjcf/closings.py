@@ -16,17 +16,17 @@ from typing import Any
 import numpy as np
 
 from heuncli.conversion.attitudes import after
-from heuncli.conversion.described import DescribedEntry
+from heuncli.conversion.described import LEFT_OUT, DescribedEntry
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.frames import BodyFrames, rotation
 from heuncli.conversion.mjcf.points import PointsMade
 from heuncli.conversion.mjcf.tree import GROUND, JointTree
+from heuncli.conversion.spec_text import pointed
 from heuncli.errors import Problem
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.models import Matrix, Vec
 
 SAME = 1e-6  # of a turn: the digits to which people write quaternions
-LEFT_OUT = "import-left-out"
 SITES = 2  # of a tendon that runs straight
 
 
@@ -198,12 +198,6 @@ def straight(c: Compiled, tendon: int) -> tuple[int, int] | None:
     if count != SITES or any(int(model.wrap_type[k]) != site for k in range(first, first + count)):
         return None
     return int(model.wrap_objid[first]), int(model.wrap_objid[first + 1])
-
-
-def pointed(value: float) -> str:
-    """A number with a point in it: it may stand for one with a unit (manual/format.md, "Parameters")."""
-    text = repr(float(value))
-    return text if "." in text else text.replace("e", ".0e")
 
 
 def moved(polynomial: tuple[float, ...], argument: str) -> str:

@@ -13,12 +13,13 @@ from typing import Any
 
 from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedParameter
-from heuncli.conversion.mjcf.closings import Coupling, left_out, moved, pointed
+from heuncli.conversion.mjcf.closings import Coupling, left_out, moved
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.holding import HeldJoints
 from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
 from heuncli.conversion.names import called
-from heuncli.conversion.spec_text import number_text
+from heuncli.conversion.spec_text import number_text, pointed
+from heuncli.conversion.told_moving import told_moving
 from heuncli.errors import Problem, SpecError
 from heuncli.named_tuples import NamedTuple
 
@@ -123,13 +124,8 @@ class _Making:
         if not self.parameters:
             return ()
         first = self.parameters[0]
-        pose = f'--set {first.name}="{"0.1 m" if str(first.value).endswith(" m") else "30 deg"}"'
-        if self.asked.free:
-            return (f"The joints are free, and start where their parameters say: {pose}",)
-        return (
-            f"Drives hold the joints where their parameters say ({pose}); what they take is told as drive.",
-            "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
-        )
+        another = "10 mm" if str(first.value).endswith(" m") else "30 deg"
+        return told_moving(first.name, another, free=self.asked.free, at_rest=False)
 
 
 def laws_of(

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.conversion.mjcf.closings import LEFT_OUT
+from heuncli.conversion.described import LEFT_OUT
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.loads import by_motor, is_tendon_spring
 from heuncli.errors import Problem, SourceLocation

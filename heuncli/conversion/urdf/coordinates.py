@@ -9,9 +9,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from heuncli.conversion.asked import ImportAsked
-from heuncli.conversion.described import DescribedEntry, DescribedParameter
+from heuncli.conversion.described import LEFT_OUT, DescribedEntry, DescribedParameter
 from heuncli.conversion.names import Namer, called
-from heuncli.conversion.spec_text import number_text
+from heuncli.conversion.spec_text import number_text, pointed
+from heuncli.conversion.told_moving import told_moving
 from heuncli.conversion.urdf.document import UrdfJoint
 from heuncli.conversion.urdf.fields import UrdfFields
 from heuncli.conversion.urdf.links import Linked
@@ -72,13 +73,7 @@ class RobotCoordinates:
             return ()
         first = self.parameters[0].name
         joint = next(joint for _, joint, name in self.single if name == first)
-        pose = f'--set {first}="{QUANTITIES[self.types[joint.name]].another}"'
-        if self.asked.free:
-            return (f"The joints are free, and start at rest where their parameters say ({pose}).",)
-        return (
-            f"Drives hold the joints where their parameters say ({pose}); what they take is told as drive.",
-            "A motion is a law of time in place of the parameter: 0.5*sin(2*t).",
-        )
+        return told_moving(first, QUANTITIES[self.types[joint.name]].another, free=self.asked.free, at_rest=True)
 
     def _take(self, joint: UrdfJoint, name: str, quantity: JointQuantity) -> None:
         follows = self.followed.get(joint.name)
@@ -144,7 +139,7 @@ class RobotCoordinates:
         law = f"{{type: friction, joint: {name}, {quantity.friction}: {number_text(joint.friction)}, speed: 0.01}}"
         message = f'friction="{joint.friction:g}" is not taken over'
         hint = f"a friction has a rate at which it is full: forces: {{friction_{name}: {law}}}"
-        self.left_out.append(self.fields.problem("import-left-out", joint.element, joint.path, message, hint))
+        self.left_out.append(self.fields.problem(LEFT_OUT, joint.element, joint.path, message, hint))
 
 
 def ratio(leader: str, multiplier: float, offset: float, alike: bool) -> str:
@@ -153,13 +148,8 @@ def ratio(leader: str, multiplier: float, offset: float, alike: bool) -> str:
     A number with a point in it may stand for one with a unit: metres a radian.
     """
     plain = alike and multiplier == int(multiplier) and abs(multiplier) <= MOST_PLAIN
-    factor = number_text(multiplier) if plain and offset == 0.0 else _with_point(multiplier)
+    factor = number_text(multiplier) if plain and offset == 0.0 else pointed(multiplier)
     product = leader if factor == "1" else f"-{leader}" if factor == "-1" else f"{factor}*{leader}"
     if offset == 0.0:
         return product
-    return f"{product} {'-' if offset < 0.0 else '+'} {_with_point(abs(offset))}"
-
-
-def _with_point(value: float) -> str:
-    text = repr(value)
-    return text if "." in text or "e" not in text else text.replace("e", ".0e")
+    return f"{product} {'-' if offset < 0.0 else '+'} {pointed(abs(offset))}"

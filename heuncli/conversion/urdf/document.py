@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
-from heuncli.conversion.urdf.fields import XACRO, UrdfFields, alike
-from heuncli.conversion.xml_elements import XmlElement
+from heuncli.conversion.described import LEFT_OUT
+from heuncli.conversion.urdf.fields import UrdfFields, alike
+from heuncli.conversion.xml_elements import XACRO, XmlElement
 from heuncli.errors import SpecError
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
@@ -241,7 +242,7 @@ def _mimic(element: XmlElement, path: str, fields: UrdfFields, kind: str | None)
         return None
     if kind == "fixed":
         message = "it is fixed, and what it is to follow is left out"
-        fields.left_out.append(fields.problem("import-left-out", part, path, message, "delete the <mimic>"))
+        fields.left_out.append(fields.problem(LEFT_OUT, part, path, message, "delete the <mimic>"))
         return None
     fields.known(part, path, "joint", "multiplier", "offset")
     joint = fields.word(part, "joint", path)

@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Collection, Iterator, Sequence
 
 from heuncli.conversion.attitudes import RIGHT
-from heuncli.conversion.xml_elements import XmlElement
+from heuncli.conversion.xml_elements import XACRO, XmlElement
 from heuncli.errors import Problem, SourceLocation
 from heuncli.nearest import did_you_mean
 from heuncli.number_range import is_in_range, out_of_range
@@ -16,7 +16,6 @@ from heuncli.spec.models import Vec
 NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?\Z")
 NOT_FINITE = re.compile(r"[+-]?(?:nan|inf(?:inity)?)\Z", re.IGNORECASE)
 COUNTS = {1: "a number", 3: "three numbers"}
-XACRO = "macros are expanded first: xacro robot.urdf.xacro > robot.urdf"
 ALIKE = 0.8  # share of letters: uppr is meant as upper, gear_velocity not as velocity
 CANCELLED = 1e-20  # [m, rad] less is what CAD programs leave of what cancels out; a mass times its square is no number
 NEARLY_RIGHT = 1e-3  # [rad] 1.57 is nearer to a right angle, and what is meant to be another is farther

@@ -7,7 +7,7 @@ from typing import Any
 
 from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.attitudes import after, of_roll_pitch_yaw, shifted, turned, turned_tensor
-from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
+from heuncli.conversion.described import LEFT_OUT, DescribedBody, DescribedEntry, DescribedMachine
 from heuncli.conversion.names import called, names_of
 from heuncli.conversion.urdf.carriers import GROUND, PlacedLink
 from heuncli.conversion.urdf.coordinates import RobotCoordinates
@@ -110,7 +110,7 @@ def _undamped(judged: JudgedRobot, fields: UrdfFields) -> Iterator[Problem]:
         if joint.movable and not joint.single and (joint.damping or joint.friction):
             message = f"the damping and friction of a joint of type {joint.kind} are not taken over"
             hint = "a force of type damper resists in a plane, a couple in time what floats"
-            yield fields.problem("import-left-out", joint.element, joint.path, message, hint)
+            yield fields.problem(LEFT_OUT, joint.element, joint.path, message, hint)
 
 
 def _told(judged: JudgedRobot, fields: UrdfFields) -> Iterator[str]:

@@ -163,17 +163,14 @@ class WatchedNumber(NamedTuple):
         return np.asarray(envelope(values)[:, int(self.condition.above)])
 
     def error(self, keys: Sequence[str], h: Array) -> float:
-        """The error of the number; h: as sampled. A place errs by the scene's size; what has no error, as its kind."""
+        """The error of the number; h: as sampled. What has no error of its own errs as its kind."""
         row, estimate, limit = quantity(keys), self.study.history.estimate, abs(self.condition.limit)
         largest = float(np.max(np.abs(h), initial=0.0, where=np.isfinite(h)))
         largest = limit + (math.sqrt(largest) if self.even else largest)
         kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
-        if row is not None and row.units[-1] in ("m", "rad"):
-            relative, scale = estimate["motion"], max(largest, self.setup.scene.layout.size)
-        else:
-            relative, scale = float(estimate.get(KIND_OF.get(kind, kind), 0.0)), largest  # type: ignore[arg-type]
+        relative = float(estimate.get(KIND_OF.get(kind, kind), 0.0))  # type: ignore[arg-type]
         known = (*(self.study.magnitudes.errors.get((kind, unit), 0.0) for unit in row.units),) if row else ()
-        own = stated_error(self.study, keys) if any(known) else relative * scale
+        own = stated_error(self.study, keys) if any(known) else relative * largest
         return max(float(np.nan_to_num(own)), tolerances.WRITTEN * largest)
 
 

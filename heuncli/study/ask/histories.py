@@ -20,12 +20,10 @@ from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, is_even, report
 from heuncli.study.ask.study import Study
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, distinct, finite
-from heuncli.study.search.instants import own_extremes
 from heuncli.study.search.turnings import with_turnings
 
 CODE = "no-collective"
 EVENLY = 256  # intervals of a run that are looked into, whatever its steps
-FINELY = 10_000  # intervals at whose quarters loads in time are looked at
 MOST_INSTANTS = 400_000  # of a grid: a hundred thousand steps
 
 
@@ -47,7 +45,7 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
     searched = ColumnSearch(lambda results: columns(study, results, paths, even), [], error, even)
     sampled = StudyColumns(study, searched, with_shared(wanted), None)
     grid, enough = study.close_times(MOST_INSTANTS)
-    grid = with_own_turns(study, grid)
+    grid = distinct(np.concatenate([grid, np.linspace(grid[0], grid[-1], EVENLY + 1)]))
     rows = sampled.columns(grid) if enough else np.zeros((len(grid), len(paths)))
     largest = finite(np.abs(rows), 0.0).max(axis=0)
     error = np.maximum(error, tolerances.CONSTANT * np.where(even, np.sqrt(largest), largest))
@@ -62,14 +60,6 @@ def histories(study: Study, errors: Mapping[str, float], units: Mapping[str, str
         LoadHistory(path, units[path], times, values[:, k], float(whole[k]), squared, study.numbers(path).of_vectors)
         for k, (path, squared) in enumerate(zip(paths, even.tolist(), strict=True))
     ]
-
-
-def with_own_turns(study: Study, grid: Array) -> Array:
-    """A grid, and instants all over it, those among them at which loads in time turn, be they short: no step feels what
-    pushes a body that is held."""
-    evenly = np.linspace(grid[0], grid[-1], EVENLY + 1)
-    turns = own_extremes(study.setup.scene.mechanism, np.linspace(grid[0], grid[-1], FINELY + 1))
-    return np.asarray(distinct(np.concatenate([grid, evenly, *turns])))
 
 
 def columns(study: Study, results: Results, paths: Sequence[str], even: Mask) -> Array:

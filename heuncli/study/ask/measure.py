@@ -223,7 +223,7 @@ def searched(
     """The lowest and the highest of a motion, between the samples too; along a run of cuts with its place."""
     asked = study.numbers(path)
     even = is_even(asked)
-    error = np.array([stated_error(study, asked.keys)])
+    error = np.nan_to_num(np.array([stated_error(study, asked.keys)]), nan=np.nan, posinf=np.nan)
     n = columns(study.results).shape[1]
     search = ColumnSearch(columns, [list(range(n))], error, np.array([even]), sides=sides)
     if CUT in asked.axes:
@@ -246,12 +246,15 @@ def of_all(found: Peak) -> Peak:
 
 
 def stated_error(study: Study, keys: Sequence[str]) -> float:
-    """The error of the quantity under some keys, as the tables state it; nan where they state none."""
+    """The error of the quantity under some keys, as the tables state it; nan where they state none.
+
+    Where what turns has another unit than what slides, the less of the two.
+    """
     row, of = quantity(keys), study.magnitudes
     if row is None:
         return np.nan
-    kind = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1])
-    known = [(of.errors.get((kind, unit), 0.0), tolerances.WRITTEN * of.by_unit.get(unit, 0.0)) for unit in row.units]
+    kind, lost = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), of.lost()
+    known = [(of.errors.get((kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
     return min(map(max, known)) or np.nan
 
 

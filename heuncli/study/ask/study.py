@@ -63,7 +63,8 @@ class Study:
     @property
     def magnitudes(self) -> Magnitudes:
         """What the numbers at the asked instants, and those of blows, are summed from, and their errors."""
-        own, errors = self.recovery.magnitudes, dict(self.history.errors)
+        own = self.recovery.magnitudes
+        errors = {**self.history.errors, **self.results.errors_of_places(own.size)}
         if self.struck is None:
             return own._replace(errors=errors)
         return own._replace(by_unit={**self.struck.by_unit, **own.by_unit}, errors=errors | self.struck.errors)

@@ -30,7 +30,10 @@ from heuncli.study.search.extremes import (
 
 MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
 OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that repeats itself looks at rest
+NO_INSTANTS = np.zeros(0)
 FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
+
+Slack = Callable[[Array, Array], Array]  # of sizes (m, n) over intervals of widths (m,) what does not count, (m, n)
 
 
 class SampledTurns(NamedTuple):
@@ -50,7 +53,12 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
     times (n_t,), grid (n_t, n_columns): what is begun with; errors (n_columns,): of the numbers; even: whether columns
     are their squares.
     """
-    found = resolved(sample, SampledTurns(times, grid, complete=True), errors, even)
+
+    def slack(size: Array, _: Array) -> Array:
+        """What of numbers of some sizes (m, n_columns) their errors leave open."""
+        return np.asarray(np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors))
+
+    found = resolved(sample, SampledTurns(times, grid, complete=True), slack)
     if len(times) < 2 or not found.complete or not np.isfinite(found.values).all():
         return found
     columns = np.arange(grid.shape[1], dtype=np.intp)
@@ -79,32 +87,78 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
     return together(parts, complete=not len(pool.target))
 
 
-def resolved(sample: ColumnsAt, found: SampledTurns, errors: Array, even: Mask) -> SampledTurns:
-    """The grid with more instants where a number does not run as its neighbours foretell."""
+def resolved(
+    sample: ColumnsAt,
+    found: SampledTurns,
+    slack: Slack,
+    *,
+    most: int = MOST_PROBES,
+    probes: Array | None = None,
+    doubted: Mask | None = None,
+) -> SampledTurns:
+    """The grid with more instants where a number does not run as its neighbours foretell.
+
+    slack: what of the numbers does not count. probes (m,): instants between those of the grid that are asked, too; with
+    these what was foretold is left out. most: so many instants are asked for. doubted (n - 1,): the intervals of the
+    grid that need be asked; all, by default.
+    """
     span, asked = float(np.ptp(found.times)), 0
-    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that were not asked yet
+    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that are to be asked
+    if doubted is not None:
+        new = doubted
+    also = NO_INSTANTS if probes is None else probes
     for _ in range(MOST_ROUNDS):
-        times, values, _ = found
+        times, values, complete = found
         wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
         k = np.flatnonzero(new & wide & ~sides_of_jumps(times))
-        if not len(k) or not np.isfinite(values).all():
+        if not len(k) + len(also) or not np.isfinite(values).all():
             return found
-        if asked > MOST_PROBES:
+        if asked > most:
             return found._replace(complete=False)
         at = times[k] + OFF_MIDDLE * (times[k + 1] - times[k])
+        at, also = distinct(np.concatenate([at, also])), NO_INSTANTS
+        k = np.searchsorted(times, at) - 1
         there = sample(at)
         asked += len(at)
-        four = neighbours(times, k)
-        expected = cubic(times[four], values[four], at)
-        swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
-        size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
-        slack = np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors)
-        off = ~(np.abs(there - expected) <= np.maximum(FORETOLD * swing, slack)).all(axis=1)
-        found = together([found, SampledTurns(at, there, complete=True)], complete=True)
+        off = ~foretold(found, k, at, there, slack)
+        kept = off | (probes is None)
+        found = together([found, SampledTurns(at[kept], there[kept], complete)], complete=complete)
         new = np.zeros(len(found.times) - 1, dtype=bool)
-        left = np.searchsorted(found.times, times[k[off]])
-        new[left] = new[left + 1] = True
-    return found._replace(complete=not new.any())
+        place = np.searchsorted(found.times, at[off])
+        new[place - 1] = new[place] = True
+    return found._replace(complete=found.complete and not new.any())
+
+
+def doubtful(found: SampledTurns, slack: Slack) -> Mask:
+    """The intervals of a grid beside an instant that its neighbours do not foretell, (n - 1,): the others, half as
+    wide as what foretells, need not be asked."""
+    times, values, _ = found
+    doubted = np.ones(max(len(times) - 1, 0), dtype=bool)
+    if len(times) < 5:
+        return doubted
+    jumps = np.append(np.append(True, sides_of_jumps(times)), True)
+    inner = np.arange(2, len(times) - 2)
+    inner = inner[~(jumps[inner - 1] | jumps[inner] | jumps[inner + 1] | jumps[inner + 2])]
+    four = inner[:, None] + np.array([-2, -1, 1, 2])
+    known = np.zeros(len(times), dtype=bool)
+    known[inner] = as_expected(found, four, inner - 1, times[inner], values[inner], slack)
+    doubted &= ~(known[1:] & known[:-1])
+    return doubted
+
+
+def foretold(found: SampledTurns, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
+    """Whether what is there at instants within intervals is what the cubics through their neighbours have, (m,)."""
+    return as_expected(found, neighbours(found.times, k), k, at, there, slack)
+
+
+def as_expected(found: SampledTurns, four: Indices, k: Indices, at: Array, there: Array, slack: Slack) -> Mask:
+    """Whether the cubics through four instants each, (m, 4), have what is there at others in the intervals k, (m,)."""
+    times, values, _ = found
+    expected = cubic(times[four], values[four], at)
+    swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
+    size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
+    beside = slack(size, times[k + 1] - times[k])
+    return np.asarray((np.abs(there - expected) <= np.maximum(FORETOLD * swing, beside)).all(axis=1))
 
 
 def neighbours(times: Array, k: Indices) -> Indices:
