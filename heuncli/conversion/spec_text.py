@@ -18,7 +18,6 @@ from heuncli.conversion.described import (
     DescribedPoint,
     Value,
 )
-from heuncli.errors import Problem
 from heuncli.foreign_text import shown
 from heuncli.spec.models import Matrix
 from heuncli.spec.source import plain
