@@ -25,7 +25,8 @@ def require_other_file(output: str | None, specs: Sequence[str], option: str = "
     name = name_of(state)
     itself = name in specs or (not to_stdout and any(same_file(output, spec) for spec in specs))
     if itself or name is not None:
-        what = f"the {are} itself" if itself else f"a table of the {are}"
+        part = "table" if are == "spec" else "part"
+        what = f"the {are} itself" if itself else f"a {part} of the {are}"
         where = "standard output" if to_stdout else f"{option} {output}"
         raise UsageError(Problem("bad-option", f"{where}: that is {what}", hint="name another file"))
 

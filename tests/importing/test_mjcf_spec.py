@@ -116,6 +116,11 @@ LEFT = {  # what is left out, and what the warning says of it
         scene(rest='<tendon><fixed name="t" stiffness="3"><joint joint="elbow" coef="1"/></fixed></tendon>'),
         "tendons are in a spec where they run straight.*tendon t",
     ),
+    "limited tendon": (
+        scene('<site name="w" pos="0 1 0"/>', '<tendon><spatial name="t" stiffness="3" range="0 2"><site site="tip"/>'
+              '<site site="w"/></spatial></tendon>'),
+        "limits, friction and armature of tendons.*springs and dampers are in the spec: tendon t",
+    ),
     "soft": (
         scene(rest='<equality><joint name="s" joint1="elbow" solref="0.5 1"/></equality>'), "softness.*equality s",
     ),
@@ -182,6 +187,8 @@ def test_files_are_named_from_the_models_folder(heun, folder):
     (folder / "m.xml").write_text('<mujoco model="m"><include file="parts/a.xml"/></mujoco>')
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 0 and "mass: 7" in done.stdout
+    done = heun("import", "m.xml", "-o", "parts/a.xml")
+    assert done.returncode == 2 and "that is a part of the model" in done.stderr
     (folder / "parts" / "a.xml").write_text('<!DOCTYPE a [<!ENTITY b "c">]><mujocoinclude/>')
     done = heun("import", "m.xml", "-q")
     assert done.returncode == 2 and "a.xml:1" in done.stderr and "xml-entities" in done.stderr

@@ -47,6 +47,7 @@ def main(request: ImportRequest) -> int:
     reader = reader_of(root, request.file)
     _require_known(request, asked, reader)
     machine = reader.described(content, request.file, root, asked, digest(content))
+    require_other_file(target, [request.file], are="model")  # nor into what it includes
     for problem in () if request.quiet and not request.strict else machine.left_out:
         say(f"warning: {problem}")
     if request.strict and machine.left_out:

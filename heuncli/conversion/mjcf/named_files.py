@@ -13,10 +13,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from heuncli.conversion.xml_elements import LARGEST, XmlElement, read_elements
-from heuncli.errors import Problem, SourceLocation, SpecError
+from heuncli.errors import Finding, Problem, SourceLocation, SpecError
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
-from heuncli.spec.reading import STANDARD_INPUT
+from heuncli.spec.reading import STANDARD_INPUT, read_bytes
 
 MODELS = frozenset({"include", "model"})  # elements that name a file of the same kind
 FOLDERS = ("meshdir", "texturedir", "assetdir")
@@ -57,9 +57,17 @@ def named_files(root: XmlElement, file: str) -> ModelFiles:
             if inner.tag in MODELS and name not in included:
                 if len(included) >= MOST_FILES:
                     raise _refused("too-large", inner, its_file, f"more than {MOST_FILES:,} files", MANY)
-                included[name] = found.read_bytes()
+                included[name] = _content(found, inner, its_file)
                 waiting.append((read_elements(included[name], str(found)), str(found), found.parent))
     return ModelFiles(str(folder.absolute()), included)
+
+
+def _content(path: Path, element: XmlElement, file: str) -> bytes:
+    """The text of a model, read as specs are: so it is known to the output, which must not go there."""
+    try:
+        return bytes(read_bytes(str(path), LARGEST))
+    except Finding as finding:
+        raise _refused(finding.code, element, file, finding.message, finding.hint) from None
 
 
 def _all(root: XmlElement) -> Iterator[tuple[XmlElement, int]]:

@@ -37,7 +37,9 @@ def without_counterpart(c: Compiled, rods: frozenset[int], limits: bool, free: b
     """All that is left out of the spec; rods: the tendons that are in it."""
     for row in ROWS:
         yield from _problem(c, row, row.has(c))
-    yield from _problem(c, TENDONS, (tendon for tendon in _acting(c) if tendon not in rods))
+    acting = [tendon for tendon in _acting(c) if tendon not in rods]
+    yield from _problem(c, TENDONS, (tendon for tendon in acting if not is_tendon_spring(c, tendon)))
+    yield from _problem(c, TENDON_SPRINGS, (tendon for tendon in acting if is_tendon_spring(c, tendon)))
     if limits:
         yield from _problem(c, BALL_LIMITS, _where(c, c.model.jnt_limited, _of_type(c, "mjJNT_BALL")))
     if not free:
@@ -229,8 +231,13 @@ ROWS = (
 )  # fmt: skip
 TENDONS = WithoutCounterpart(
     "tendon", lambda c: (), "tendons are in a spec where they run straight between two sites, as springs or rods of "
-    "a given length, without limits, friction or armature; left out",
+    "a given length; left out",
     "rods, springs and actuators run between points",
+)  # fmt: skip
+TENDON_SPRINGS = WithoutCounterpart(
+    "tendon", lambda c: (), "limits, friction and armature of tendons, and what is not linear in them, are left out; "
+    "their springs and dampers are in the spec",
+    "an actuator between two points has any law in its length",
 )  # fmt: skip
 SHARED_WEIGHTS = WithoutCounterpart(
     "body", lambda c: (), "weights that motors take off (actuatorgravcomp) in some of the joints that carry them: in "
