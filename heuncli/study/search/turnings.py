@@ -1,11 +1,11 @@
 """All turning points of sampled numbers, also those between the samples.
 
-First a grid is made that shows how the numbers run: each interval is asked once, and divided there unless the cubic
-through four neighbours foretold what is found. For the one largest value of a run an interval that cannot hold it need
-not be looked into; for all turns each must be. Then, as extremes are searched (study/search/intervals.py): an interval
-hides a turn if it promises more than the higher of its ends, or less than the lower. It is asked where it promises most
-and divided there, until none promises more than a part of the error. What a run does below its own error is not looked
-for.
+First a grid is made that shows how the numbers run: each interval is asked, and divided further there unless cubics
+through four neighbours foretold what is found, twice in a row. For the one largest value of a run an interval that
+cannot hold it need not be looked into; for all turns each must be. Then, as extremes are searched
+(study/search/intervals.py): an interval hides a turn if it promises more than the higher of its ends, or less than the
+lower. It is asked where it promises most and divided there, until none promises more than a part of the error. What a
+run does below its own error is not looked for.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from heuncli.study.search.extremes import (
 
 MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
 OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that repeats itself looks at rest
+OFTEN_ENOUGH = 2  # times in a row that an interval is foretold
 FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
 
 
@@ -80,31 +81,43 @@ def with_turnings(sample: ColumnsAt, times: Array, grid: Array, errors: Array, e
 
 
 def resolved(sample: ColumnsAt, found: SampledTurns, errors: Array, even: Mask) -> SampledTurns:
-    """The grid with more instants where a number does not run as its neighbours foretell."""
+    """The grid with more instants where a number does not run as its neighbours foretell.
+
+    An interval is done when both it and the half of it that it lies in were foretold: one instant may be so by chance,
+    as a wave is in the middle between its summits. Those beside one that was not are asked again, for they were
+    foretold by what did not show it.
+    """
     span, asked = float(np.ptp(found.times)), 0
-    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that were not asked yet
+    foretold = np.zeros(max(len(found.times) - 1, 0), dtype=np.intp)  # how often in a row, of each interval
     for _ in range(MOST_ROUNDS):
-        times, values, _ = found
+        times = found.times
         wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
-        k = np.flatnonzero(new & wide & ~sides_of_jumps(times))
-        if not len(k) or not np.isfinite(values).all():
+        k = np.flatnonzero((foretold < OFTEN_ENOUGH) & wide & ~sides_of_jumps(times))
+        if not len(k) or not np.isfinite(found.values).all():
             return found
         if asked > MOST_PROBES:
             return found._replace(complete=False)
         at = times[k] + OFF_MIDDLE * (times[k + 1] - times[k])
         there = sample(at)
         asked += len(at)
-        four = neighbours(times, k)
-        expected = cubic(times[four], values[four], at)
-        swing = np.ptp(np.concatenate([values[four], there[:, None]], axis=1), axis=1)
-        size = np.maximum(np.abs(values[k]), np.abs(values[k + 1]))
-        slack = np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors)
-        off = ~(np.abs(there - expected) <= np.maximum(FORETOLD * swing, slack)).all(axis=1)
+        off = k[~as_foretold(found, k, at, there, errors, even)]
+        foretold[k] += 1
+        foretold[off] = 0
+        beside = np.clip(np.concatenate([off - 1, off + 1]), 0, len(foretold) - 1)
+        foretold[beside] = np.minimum(foretold[beside], OFTEN_ENOUGH - 1)
         found = together([found, SampledTurns(at, there, complete=True)], complete=True)
-        new = np.zeros(len(found.times) - 1, dtype=bool)
-        left = np.searchsorted(found.times, times[k[off]])
-        new[left] = new[left + 1] = True
-    return found._replace(complete=not new.any())
+        foretold = foretold[np.searchsorted(times, found.times[:-1], side="right") - 1]
+    return found._replace(complete=bool((foretold >= OFTEN_ENOUGH).all()))
+
+
+def as_foretold(found: SampledTurns, k: Indices, at: Array, there: Array, errors: Array, even: Mask) -> Mask:
+    """Whether intervals k (m,) have what cubics through their neighbours say: there (m, n_columns) at one instant each."""
+    four = neighbours(found.times, k)
+    expected = cubic(found.times[four], found.values[four], at)
+    swing = np.ptp(np.concatenate([found.values[four], there[:, None]], axis=1), axis=1)
+    size = np.maximum(np.abs(found.values[k]), np.abs(found.values[k + 1]))
+    slack = np.where(even, errors * errors + 2.0 * errors * np.sqrt(size), errors)
+    return np.asarray((np.abs(there - expected) <= np.maximum(FORETOLD * swing, slack)).all(axis=1))
 
 
 def neighbours(times: Array, k: Indices) -> Indices:
