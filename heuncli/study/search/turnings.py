@@ -111,7 +111,7 @@ def resolved(sample: ColumnsAt, found: SampledTurns, errors: Array, even: Mask) 
 
 
 def as_foretold(found: SampledTurns, k: Indices, at: Array, there: Array, errors: Array, even: Mask) -> Mask:
-    """Whether intervals k (m,) have what cubics through their neighbours say: there (m, n_columns) at one instant each."""
+    """Whether intervals k (m,) have what cubics through their neighbours say; there (m, n_columns): at one instant."""
     four = neighbours(found.times, k)
     expected = cubic(found.times[four], found.values[four], at)
     swing = np.ptp(np.concatenate([found.values[four], there[:, None]], axis=1), axis=1)
