@@ -73,6 +73,9 @@ def _case(cases: LoadCases, case: LoadCase, nodes: DeckNodes, k: int) -> Iterato
             axis, a = (turning / size).tolist(), size / TURN
             end = [2] if rate else [1, -a]
             yield from card("RFORCE", [first + number, 0, 0, a if rate else 0.0, *axis, *end])
+    if not used:  # LOAD has to add up something
+        used.append(first + 2)
+        yield from card("GRAV", [first + 2, 0, 0.0, 1.0, 0.0, 0.0])
     yield from _sum(first, used)
 
 

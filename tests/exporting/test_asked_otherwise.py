@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 import heuncli
+from heuncli.decks.naming import DeckNames
+from heuncli.decks.registry import DECKS
 from heuncli.load_cases.model import LoadCases
 
 SCENE: dict[str, Any] = {
@@ -62,3 +64,15 @@ def test_a_blow_with_the_name_of_a_force_is_a_blow() -> None:
     push = {"forces": {"blow": {"type": "force", "on": "lower.end", "vector": [0, 1, 0]}}, "analysis": MOTION}
     cases = heuncli.solve(SCENE | push).load_cases("lower", "first,impulse:blow").cases
     assert [next(one.kind for one in case.actions if one.name == "blow") for case in cases] == ["force", "impulse"]
+
+
+def test_a_case_without_any_load_is_a_deck() -> None:
+    """Of a body that nothing acts on Nastran's LOAD adds up a set all the same: without one it is no card."""
+    body = {"mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1]}
+    cases = heuncli.solve({"heun": 1, "bodies": {"idle": body}}).load_cases("idle", "first")
+    deck = "".join(DECKS["nastran"].written(cases, DeckNames(1001, "BODY")))
+    load = deck[deck.index("LOAD* ") :].split()
+    assert (
+        load[1:6] == ["10", "1.0", "1.0", "12", "*"]
+        and "GRAV*                 12               0             0.0" in deck
+    )

@@ -1,11 +1,11 @@
 """All turning points of sampled numbers, also those between the samples.
 
-First a grid is made that shows how the numbers run: each interval is asked once, and divided there unless the cubic
-through four neighbours foretold what is found. For the one largest value of a run an interval that cannot hold it need
-not be looked into; for all turns each must be. Then, as extremes are searched (study/search/intervals.py): an interval
-hides a turn if it promises more than the higher of its ends, or less than the lower. It is asked where it promises most
-and divided there, until none promises more than a part of the error. What a run does below its own error is not looked
-for.
+First a grid is made that shows how the numbers run: each interval is asked, and divided further there unless cubics
+through four neighbours foretold what is found, twice in a row. For the one largest value of a run an interval that
+cannot hold it need not be looked into; for all turns each must be. Then, as extremes are searched
+(study/search/intervals.py): an interval hides a turn if it promises more than the higher of its ends, or less than the
+lower. It is asked where it promises most and divided there, until none promises more than a part of the error. What a
+run does below its own error is not looked for.
 """
 
 from __future__ import annotations
@@ -31,6 +31,7 @@ from heuncli.study.search.extremes import (
 MOST_PROBES = 2_000_000  # instants asked for in one search: turning points of some hundred thousand cycles
 OFF_MIDDLE = 0.52  # of an interval: where it is asked, so that nothing that repeats itself looks at rest
 NO_INSTANTS = np.zeros(0)
+OFTEN_ENOUGH = 2  # times in a row that an interval is foretold
 FORETOLD = 0.02  # of the swing of four neighbours: cubics through seven instants a period do as well
 
 Slack = Callable[[Array, Array], Array]  # of sizes (m, n) over intervals of widths (m,) what does not count, (m, n)
@@ -98,19 +99,23 @@ def resolved(
 ) -> SampledTurns:
     """The grid with more instants where a number does not run as its neighbours foretell.
 
+    An interval is done when both it and the half of it that it lies in were foretold: one instant may be so by chance,
+    as a wave is in the middle between its summits. Those beside one that was not are asked again, for they were
+    foretold by what did not show it.
     slack: what of the numbers does not count. probes (m,): instants between those of the grid that are asked, too; with
-    these what was foretold is left out. most: so many instants are asked for. doubted (n - 1,): the intervals of the
-    grid that need be asked; all, by default.
+    these what was foretold is left out, and one instant of an interval is enough. most: so many instants are asked for.
+    doubted (n - 1,): the intervals of the grid that need be asked; all, by default.
     """
     span, asked = float(np.ptp(found.times)), 0
-    new = np.ones(max(len(found.times) - 1, 0), dtype=bool)  # intervals that are to be asked
+    enough = OFTEN_ENOUGH if probes is None else 1
+    often = np.zeros(max(len(found.times) - 1, 0), dtype=np.intp)  # in a row that each interval was foretold
     if doubted is not None:
-        new = doubted
+        often[~doubted] = enough
     also = NO_INSTANTS if probes is None else probes
     for _ in range(MOST_ROUNDS):
         times, values, complete = found
         wide = np.diff(times) > tolerances.SIDE_BY_SIDE * span
-        k = np.flatnonzero(new & wide & ~sides_of_jumps(times))
+        k = np.flatnonzero((often < enough) & wide & ~sides_of_jumps(times))
         if not len(k) + len(also) or not np.isfinite(values).all():
             return found
         if asked > most:
@@ -122,11 +127,13 @@ def resolved(
         asked += len(at)
         off = ~foretold(found, k, at, there, slack)
         kept = off | (probes is None)
+        often[k] += 1
+        often[k[off]] = 0
+        beside = np.clip(np.concatenate([k[off] - 1, k[off] + 1]), 0, len(often) - 1)
+        often[beside] = np.minimum(often[beside], enough - 1)
         found = together([found, SampledTurns(at[kept], there[kept], complete)], complete=complete)
-        new = np.zeros(len(found.times) - 1, dtype=bool)
-        place = np.searchsorted(found.times, at[off])
-        new[place - 1] = new[place] = True
-    return found._replace(complete=found.complete and not new.any())
+        often = often[np.searchsorted(times, found.times[:-1], side="right") - 1]
+    return found._replace(complete=found.complete and bool((often >= enough).all()))
 
 
 def doubtful(found: SampledTurns, slack: Slack) -> Mask:
