@@ -23,6 +23,8 @@ from heuncli.records import record
 from heuncli.spec.models import Vec
 
 GRAVITY: Vec = (0.0, 0.0, -9.81)  # URDF has none; z is up in ROS
+# What shifts in a plane fits it upside down, too: its attitude is held, not looked for.
+AS_DRAWN = {"axis": (0.0, 0.0, 1.0), "angle": "0 deg"}
 
 
 @record
@@ -100,7 +102,7 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
         if (joint is None and not judged.grounded) or (joint is not None and joint.kind == "floating"):
             found[own.carrier] = {"position": origin}
         elif joint is not None and joint.kind == "planar":
-            found[own.carrier] = {"near": {"position": origin}}
+            found[own.carrier] = {"orientation": AS_DRAWN, "near": {"position": origin}}
     return found
 
 
