@@ -23,7 +23,7 @@ from heuncli.records import record
 from heuncli.spec.models import Vec
 
 GRAVITY: Vec = (0.0, 0.0, -9.81)  # URDF has none; z is up in ROS
-# What shifts in a plane fits it upside down, too: its attitude is held, not looked for.
+# What shifts in a plane fits it upside down, too: its attitude is held, not looked for. So no joint may turn the plane.
 AS_DRAWN = {"axis": (0.0, 0.0, 1.0), "angle": "0 deg"}
 
 
@@ -48,6 +48,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
     points.name_all(bodies)
     names = names_of("joint", [one.wanted for one in linked])
     coordinates = RobotCoordinates(linked, names, judged.tree.followed, asked, fields)
+    _require_planes_that_stay(judged, fields)
     if fields.problems:
         raise SpecError(*fields.problems)
     starts = _starts(judged)
@@ -104,6 +105,19 @@ def _starts(judged: JudgedRobot) -> dict[str, dict[str, Any]]:
         elif joint is not None and joint.kind == "planar":
             found[own.carrier] = {"orientation": AS_DRAWN, "near": {"position": origin}}
     return found
+
+
+def _require_planes_that_stay(judged: JudgedRobot, fields: UrdfFields) -> None:
+    """Refuse a planar joint whose plane another joint turns: what starts in it would have to turn with it."""
+    above = judged.tree.above
+    for joint in above.values():
+        before = above.get(joint.parent) if joint.kind == "planar" else None
+        while before is not None and before.kind in ("fixed", "prismatic"):
+            before = above.get(before.parent)
+        if before is not None and before.kind in ("revolute", "continuous"):
+            message = f"a planar joint behind {before.name}, which turns its plane, has no counterpart yet"
+            hint = "two prismatic joints and a revolute one say the same"
+            fields.report("import-joint", joint.element, joint.path, message, hint)
 
 
 def _undamped(judged: JudgedRobot, fields: UrdfFields) -> Iterator[Problem]:
