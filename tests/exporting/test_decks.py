@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
+from heuncli.commands.exporting.request import FORMATS
 from heuncli.decks import nastran
 from heuncli.decks.naming import DeckNames
 from heuncli.decks.readme import exact
@@ -347,3 +348,8 @@ def test_numbers_have_room() -> None:
 def numbers(rng: np.random.Generator) -> Iterator[float]:
     for _ in range(500):
         yield float(rng.normal() * 10.0 ** rng.integers(-60, 60))
+
+
+def test_the_command_names_the_forms_that_there_are() -> None:
+    """`--help` loads none of what writes them, so that their names stand twice."""
+    assert tuple(DECKS) == FORMATS
