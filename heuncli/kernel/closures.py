@@ -32,8 +32,9 @@ if not cython.compiled:
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
+    from heuncli.kernel.scene import ARC, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Body, Carried, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
 
 
@@ -75,7 +76,7 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind != MESH and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+    if scene.flat and row.kind <= TURN and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
@@ -87,8 +88,14 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         turn_row(scene, row)
     elif row.kind == ROD:
         rod_row(scene, row)
-    else:
+    elif row.kind == MESH:
         mesh_part(scene, row)
+    elif row.kind == STRAND:
+        strand_part(scene, row)
+    elif row.kind == ARC:
+        arc_part(scene, row)
+    else:
+        wound_part(scene, row)
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -18,6 +18,7 @@ TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
+STRAND, ARC, WOUND = range(6, 9)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -140,6 +141,9 @@ class Closure(Record):
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms.
+    STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
+    b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
+    runs from b to a. ARC, WOUND: beside the strand `part` of the same row, ratio_b is such a radius.
     """
 
     kind: int
@@ -162,10 +166,10 @@ class Closure(Record):
     q: Vec3  # point of b
     length: float
     weight: float  # of the gap [m per unit]
-    part: int  # of a SUM: the first of its parts
+    part: int  # of a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
     part_count: int
     factor: float  # of a part
-    c: int  # of a MESH: the body that carries its place and directions; -1: the ground
+    c: int  # of a MESH or WOUND: the body that carries its place and directions; -1: the ground
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
@@ -174,6 +178,7 @@ class Closure(Record):
     f: Vec3
     m: Vec3
     Q: Vec3
+    t: Vec3  # of a STRAND: its direction across the axis, as the rope is listed
     gap: float
     rate: float
     gamma: float  # J Vdot + gamma = 0
@@ -419,6 +424,27 @@ class RowTangent(Value):
     m: Vec3
     rate: float
     acceleration: float
+
+
+class Strand(Value):
+    """How a strand of a rope lies (sheaves.py): the axis, its direction across it, t x n, lengths across and whole."""
+
+    n: Vec3
+    t: Vec3
+    w: Vec3
+    l: float
+    S: float
+    h: float  # along the axis
+    sigma: float
+
+
+class StrandRate(Value):
+    """How a strand moves: rates of its angle and of its lengths across and whole; bend: of its second derivative."""
+
+    chi: float
+    l: float
+    S: float
+    bend: float
 
 
 class MotionTangent(Value):

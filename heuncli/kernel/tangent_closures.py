@@ -16,12 +16,13 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tree import direction_of
 
 
@@ -87,7 +88,12 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return dot_along(scene, row, Q)
     elif row.kind == TURN:
         return turn_row_along(scene, row, Q)
-    return rod_along(scene, row, Q)
+    elif row.kind == ROD:
+        return rod_along(scene, row, Q)
+    elif row.kind == STRAND:
+        return strand_along(scene, row)
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    return RowTangent(Q, zero, zero, 0.0, 0.0)  # what lies on a sheave
 
 
 def guide_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

@@ -32,10 +32,11 @@ class Part:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
-    its gap is counted by, of a turn one, of a mesh one or two.
+    its gap is counted by, of a turn one, of a mesh one or two. radius, strand: of a rope's arc or what is wound of it,
+    strand the place among the row's parts of the one that arrives.
     """
 
-    kind: Literal["guide", "dot", "rod", "turn", "mesh"]
+    kind: Literal["guide", "dot", "rod", "turn", "mesh", "strand", "arc", "wound"]
     a: int
     b: int
     p: Array | tuple[float, float, float] = NOWHERE
@@ -45,6 +46,8 @@ class Part:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    radius: float = 0.0
+    strand: int = 0
 
     @property
     def is_couple(self) -> bool:
@@ -63,7 +66,7 @@ class Part:
     @property
     def bodies(self) -> tuple[int, ...]:
         """All bodies that it looks at."""
-        return (self.a, self.b, self.c) if self.kind == "mesh" else (self.a, self.b)
+        return (self.a, self.b, self.c) if self.kind in ("mesh", "wound") else (self.a, self.b)
 
 
 @record

@@ -26,4 +26,33 @@ class Ratio(NamedTuple):
     type: Literal["ratio"] = "ratio"
 
 
-Coupling = Ratio  # a union of the classes here
+class Passage(NamedTuple):
+    """Where a rope passes: a point of a body, radius 0, or a sheave about it; both in the body's axes.
+
+    axis: of the sheave, None: that of the pin there; side: past which the rope runs, None: the way that is shortest;
+    grips: the rope does not slip on the sheave.
+    """
+
+    body: str
+    point: tuple[float, float, float]
+    name: str | None = None
+    radius: float = 0.0
+    axis: tuple[float, float, float] | None = None
+    side: Literal["over", "under", "left", "right"] | None = None
+    grips: bool = False
+
+
+class Rope(NamedTuple):
+    """A rope without mass through points and over sheaves; length [m], None: as assembled.
+
+    tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
+    """
+
+    through: tuple[Passage, ...]
+    length: float | None = None
+    tension_only: bool = False
+    restitution: float | None = None
+    type: Literal["rope"] = "rope"
+
+
+Coupling = Ratio | Rope

@@ -8,14 +8,19 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 
-KINDS = {"guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH}
+KINDS = {
+    "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
+    "strand": kernel.STRAND, "arc": kernel.ARC, "wound": kernel.WOUND,
+}  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
 
 
-def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]) -> ClosureRow:
-    """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
+def part_row(
+    part: Part, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+) -> ClosureRow:
+    """A condition of two bodies as the kernel's part; first: its row's first; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
     return ClosureRow(
@@ -32,7 +37,8 @@ def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[
         c=in_tree(part.c),
         ratio=ratio,
         freedom_b=freedom_b,
-        ratio_b=ratio_b,
+        ratio_b=ratio_b or part.radius,
+        part=first + part.strand,
     )
 
 

@@ -327,7 +327,8 @@ class _Builder:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
                 self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
-                self.part_rows += [part_row(part, self.in_tree, self.relative, freedoms) for part in row.parts]
+                first = len(self.part_rows)
+                self.part_rows += [part_row(part, first, self.in_tree, self.relative, freedoms) for part in row.parts]
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
 
