@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.mechanism.couplings import CoupledRow, Coordinate, Coupling, Part
+from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -264,7 +264,7 @@ def fits(stays: Sequence[Stay], way: Way, k: int, up: Array) -> bool:
 # The conditions
 
 
-def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, last: int) -> tuple[Part, ...]:
+def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, last: int) -> tuple[CouplingPart, ...]:
     """The parts of the condition between two places where a rope is held."""
     count = last - first
     signed = [s * x.radius for s, x in zip(way.sides, stays, strict=True)]
@@ -272,28 +272,28 @@ def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, 
     for k in range(first + 1, last):
         if stays[k].radius:
             x = stays[k]
-            parts.append(Part("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=k - 1 - first))
+            parts.append(CouplingPart("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=k - 1 - first))
     for k, strand, sense in ((first, 0, 1.0), (last, count - 1, -1.0)):
         if stays[k].radius:
             parts.append(wound_part(start, stays[k], sense * signed[k], way.strands[first + strand].t, strand))
     return tuple(parts)
 
 
-def strand_part(a: Stay, b: Stay, at_a: float, at_b: float) -> Part:
+def strand_part(a: Stay, b: Stay, at_a: float, at_b: float) -> CouplingPart:
     """A strand; seen from a sheave, where there is one."""
     if not a.radius and not b.radius:
-        return Part("rod", a.body, b.body, a.point, b.point)
+        return CouplingPart("rod", a.body, b.body, a.point, b.point)
     if not a.radius:
-        return Part("strand", b.body, a.body, b.point, a.point, b.axis, (-at_b, 0.0, -1.0))
+        return CouplingPart("strand", b.body, a.body, b.point, a.point, b.axis, (-at_b, 0.0, -1.0))
     other = float(np.sign(a.normal @ b.normal)) if b.radius else 1.0
-    return Part("strand", a.body, b.body, a.point, b.point, a.axis, (at_a, other * at_b, 1.0))
+    return CouplingPart("strand", a.body, b.body, a.point, b.point, a.axis, (at_a, other * at_b, 1.0))
 
 
-def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -> Part:
+def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -> CouplingPart:
     """What is wound on a sheave on which the rope does not slip; none at the start."""
     _, R = pose_of(start, x.carrier)
     turns = () if x.turn is None else (x.turn._replace(ratio=-signed * x.turn.ratio),)
-    return Part(
+    return CouplingPart(
         "wound", x.body, x.body, x.point, x.point, t @ R, x.normal @ R, 1.0, x.carrier, turns, signed, strand
     )
 

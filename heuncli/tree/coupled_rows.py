@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
+from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 
 KINDS = {
@@ -18,7 +18,7 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 
 def part_row(
-    part: Part, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+    part: CouplingPart, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
 ) -> ClosureRow:
     """A condition of two bodies as the kernel's part; first: its row's first; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
