@@ -187,6 +187,8 @@ ROWS: tuple[Quantity, ...] = (
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
     *at("couplings.COUPLING", "the load that the coupling carries", scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
+        scalar("tension", "N"), scalar("last_tension", "N")),
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),

@@ -128,5 +128,13 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
         for body, (place, force, moment) in loads.on_bodies().items()
     }
+    if loads.coupling.given.type == "rope":
+        return rope_scalars(loads) | {"on": on, "open": []}
     carried = "moment" if loads.coupling.rows[0].is_couple else "force"
     return {carried: loads.multipliers[0], "on": on, "open": []}
+
+
+def rope_scalars(loads: CouplingLoads) -> dict[str, object]:
+    """A rope's tension; where sheaves hold it that before the first of them, and that behind the last."""
+    found: dict[str, object] = {"tension": -loads.multipliers[0]}
+    return found | ({"last_tension": -loads.multipliers[-1]} if len(loads.multipliers) > 1 else {})

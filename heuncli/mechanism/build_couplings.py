@@ -34,4 +34,9 @@ def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float)
     return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
 
 
-MADE = {"ratio": ratio}
+def rope(given: c.Rope, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[CoupledRow, ...]:
+    """None yet: which way it runs is found where the bodies stand (rope_ways.py)."""
+    return ()
+
+
+MADE = {"ratio": ratio, "rope": rope}

@@ -98,8 +98,8 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
 def stay(mechanism: Mechanism, start: Assembly, name: str, k: int, given: spec.Passage) -> Stay:
     """One place of a rope."""
     names = [body.name for body in mechanism.bodies]
-    body = GROUND if given.body == "ground" else names.index(given.body)
-    point = np.array(given.point)
+    body = GROUND if given.end.body == "ground" else names.index(given.end.body)
+    point = np.array(given.end.point)
     x, R = pose_of(start, body)
     pins = pins_at(mechanism, body, point) if given.radius else []
     axis = Z if given.axis is None else unit(np.array(given.axis))

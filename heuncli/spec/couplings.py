@@ -5,9 +5,12 @@ One class a type; joints and bodies by their names. As in spec/models.py, None i
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from heuncli.named_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from heuncli.spec.models import End
 
 
 class Term(NamedTuple):
@@ -27,15 +30,13 @@ class Ratio(NamedTuple):
 
 
 class Passage(NamedTuple):
-    """Where a rope passes: a point of a body, radius 0, or a sheave about it; both in the body's axes.
+    """Where a rope passes: a point of a body, radius 0, or a sheave about it.
 
-    axis: of the sheave, None: that of the pin there; side: past which the rope runs, None: the way that is shortest;
+    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the way that is shortest;
     grips: the rope does not slip on the sheave.
     """
 
-    body: str
-    point: tuple[float, float, float]
-    name: str | None = None
+    end: End
     radius: float = 0.0
     axis: tuple[float, float, float] | None = None
     side: Literal["over", "under", "left", "right"] | None = None
@@ -53,6 +54,16 @@ class Rope(NamedTuple):
     tension_only: bool = False
     restitution: float | None = None
     type: Literal["rope"] = "rope"
+
+    @property
+    def terms(self) -> tuple[Term, ...]:
+        """No coordinates of joints."""
+        return ()
+
+    @property
+    def gripped(self) -> frozenset[str]:
+        """The bodies with sheaves on which it does not slip."""
+        return frozenset(x.end.body for x in self.through if x.grips)
 
 
 Coupling = Ratio | Rope

@@ -30,7 +30,8 @@ class Following(Protocol):
 
 def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
     """The coupling that an entry means; name: of it, for the places of its expressions."""
-    return MEANINGS[entry.type](by, name, entry)
+    made: c.Coupling = MEANINGS[entry.type](by, name, entry)  # type: ignore[operator]
+    return made
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
@@ -40,4 +41,18 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     return c.Ratio(tuple(c.Term(joint, kind.coordinates[0], factor) for joint, kind, factor in rows))
 
 
-MEANINGS = {"ratio": ratio}
+def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
+    """A rope."""
+    through = tuple(passage(by, given) for given in entry.through)
+    return c.Rope(through, entry.length, entry.tension_only, entry.restitution)
+
+
+def passage(by: Following, given: f.PassageEntry) -> c.Passage:
+    """Where a rope passes."""
+    written = given.point if given.point is not None else given.sheave
+    assert written is not None
+    end = by.end(written)
+    return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
+
+
+MEANINGS = {"ratio": ratio, "rope": rope}

@@ -49,6 +49,10 @@ def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Pre
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
+    if any(coupling.given.type == "rope" for coupling in mechanism.couplings):
+        from heuncli.mechanism.rope_ways import with_ropes  # few scenes have them
+
+        mechanism = with_ropes(mechanism, start)
     scene = arranged(mechanism, start, stages=stages)
     if mechanism.stops:
         from heuncli.tree.limits import at_rest_on_stops, start_within_limits  # where something strikes

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec import format_couplings as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 
@@ -14,7 +15,7 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        for i, joint in enumerate(coupling.of):
+        for i, joint in enumerate(coupling.of if isinstance(coupling, f.RatioEntry) else ()):
             path = ("couplings", name, "of", i)
             if joint not in joints:
                 yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
@@ -31,6 +32,8 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
 def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
     """A linear relation has a factor for each joint, none of them zero, and two joints at least."""
     for name, coupling in draft.document.couplings.items():
+        if not isinstance(coupling, f.RatioEntry):
+            continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
             message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
             yield Violation(("couplings", name, "factors"), message, "two joints at least, and a factor for each")
@@ -38,3 +41,51 @@ def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
             if factor == 0.0:
                 hint = "leave out the joint, or give its factor"
                 yield Violation(("couplings", name, "factors", i), "a factor of zero couples nothing", hint)
+
+
+@rule("rope-way")
+def rope_way(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope has two places at least; each is a point, or a sheave with a radius and perhaps an axis and a side."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name, "through")
+        if len(rope.through) < 2:
+            yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
+        for i, place in enumerate(rope.through):
+            for message, hint in wrong_places(place):
+                yield Violation((*path, i), message, hint)
+
+
+def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
+    """What is wrong with one place of a rope, each with a hint."""
+    if (place.point is None) == (place.sheave is None):
+        yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
+    elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
+        yield "a sheave without a radius", "radius: 0.3; a rope slides through a plain point, too: body.point"
+    elif place.point is not None:
+        keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
+        if keys:
+            yield f"{keys[0]} of a plain point", "a sheave is {sheave: body.point, radius: 0.3}"
+
+
+@rule("rope-bounds")
+def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope's length is positive and known; what catches pulls alone, with a restitution from 0 to 1."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name)
+        if rope.length is not None and not rope.length > 0.0:
+            yield Violation((*path, "length"), f"a rope of length {rope.length:g} m", "leave it out: as assembled")
+        if rope.length is not None and any(place.slip == "none" for place in rope.through):
+            message = "the length of a rope that is held on a sheave"
+            yield Violation((*path, "length"), message, "leave it out: what is wound on the sheave is not told, either")
+        if rope.restitution is None:
+            continue
+        if not 0.0 <= rope.restitution <= 1.0:
+            message = f"restitution {rope.restitution:g} is not between 0 and 1"
+            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: it rebounds as fast")
+        if not rope.tension_only:
+            message = "restitution of a rope that holds both ways, and so is never struck"
+            yield Violation((*path, "restitution"), message, "tension_only: true")

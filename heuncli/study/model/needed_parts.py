@@ -39,7 +39,7 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
             found.add(value)
         elif name == "joint":
             found |= bodies_of(spec.joints[value], spec)
-        elif name in ("terms", "ends"):  # of couplings
+        elif name in ("terms", "ends", "through"):  # of couplings
             found |= {body for one in value for body in bodies_of(one, spec)}
     return found & spec.bodies.keys()
 
