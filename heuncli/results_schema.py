@@ -192,6 +192,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),
+    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
@@ -394,7 +395,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     Shares by cause have their own: they may be larger than what they add up to, and err by more.
     """
     whole, by_cause, _ = f".{name}".rpartition(f".{SHARES}.")
-    if by_cause and kind in SHARED:
+    if by_cause and kind in SHARED | {"couplings"}:
         return f"{kind_of_error(kind, whole.removeprefix('.'), number.removeprefix('direct_'))} {BY_CAUSE}"
     if kind == "joints" and number == "drive":
         return "drives"

@@ -98,6 +98,8 @@ def put_answers(
         at = put(to.parts, at, scaled(part.factor, part.f))
         at = put(to.parts, at, scaled(part.factor, part.m))
         at = put(to.parts, at, part.Q)
+        at = put(to.parts, at, part.on_a)
+        at = put(to.parts, at, part.on_b)
     at = j * to.whole_width
     to.whole[at] = scene.gap
     to.whole[at + 1] = idle

@@ -32,7 +32,21 @@ if not cython.compiled:
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import ARC, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Body, Carried, Closure, Counter, Scene
+    from heuncli.kernel.scene import (
+        ARC,
+        DOT,
+        GUIDE,
+        MESH,
+        ROD,
+        STRAND,
+        SUM,
+        TURN,
+        Body,
+        Carried,
+        Closure,
+        Counter,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
@@ -107,12 +121,20 @@ def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     for i in range(row.part, row.part + row.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
         measure_condition(scene, part)
+        enter(scene, part)
         row.gap += part.factor * part.gap
         row.rate += part.factor * part.rate
         row.gamma += part.factor * part.gamma
         row.f = add_scaled(row.f, part.factor, part.f)
         row.m = add_scaled(row.m, part.factor, part.m)
     row.Q = scene.parts[row.part].Q
+
+
+def enter(scene: cython.pointer[Scene], part: cython.pointer[Closure]) -> cython.void:
+    """Where the load of a part enters its two bodies: at one place, but for what spans the way between two."""
+    if part.kind != STRAND:
+        part.on_b = part.Q
+        part.on_a = place_of(scene, part.a, part.p) if part.kind == ROD else part.Q
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

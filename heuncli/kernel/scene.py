@@ -179,6 +179,8 @@ class Closure(Record):
     m: Vec3
     Q: Vec3
     t: Vec3  # of a STRAND: its direction across the axis, as the rope is listed
+    on_a: Vec3  # of a part: where its load enters the two bodies, if that is not Q
+    on_b: Vec3
     gap: float
     rate: float
     gamma: float  # J Vdot + gamma = 0

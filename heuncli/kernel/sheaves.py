@@ -82,6 +82,8 @@ def strand_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     row.f = slope_of(of)
     row.m = scaled(row.g.y, of.n)
     row.gap = of.S
+    row.on_a = add_scaled(place_of(scene, row.a, row.p), row.g.x, of.w)
+    row.on_b = add_scaled(row.Q, row.g.y, of.w)
     row.rate = dot(row.f, v) + dot(row.m, turn)
     row.gamma = dot(row.f, add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v)))
     row.gamma += strand_rate(of, v).bend + dot(cross(a.omega, row.m), turn)

@@ -16,7 +16,20 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import (
+        DOT,
+        GUIDE,
+        MESH,
+        ROD,
+        STRAND,
+        SUM,
+        TURN,
+        Closure,
+        LoadTangent,
+        MotionTangent,
+        RowTangent,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along

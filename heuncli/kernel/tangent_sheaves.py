@@ -14,7 +14,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import Closure, MotionTangent, RowTangent, Scene, Strand, StrandRate
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import strand_of, strand_rate
-    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_motion import omega_along, point_along
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
 
 

@@ -22,15 +22,17 @@ from heuncli.tree.layout import Layout
 
 @record
 class PartLoad:
-    """Force and moment of one part ON its body b, the opposite ON a, about the place (n_t, 3).
+    """Force and moment of one part ON its body b, about the place there, the opposite ON a, about its place on a.
 
-    f, m (n_t, 3): those for a multiplier of 1.
+    place, place_a (n_t, 3); f, m, m_a (n_t, 3): those for a multiplier of 1, m about the one, m_a about the other.
     """
 
     part: CouplingPart
     place: Array
+    place_a: Array
     f: Array
     m: Array
+    m_a: Array
     multiplier: Array
 
     @property
@@ -50,11 +52,22 @@ class PartLoad:
         return replace(self, multiplier=multiplier)
 
     @property
+    def moment_on_a(self) -> Array:
+        """Moment ON a about its place there."""
+        found: Array = -self.multiplier[..., None] * self.m_a
+        return found
+
+    @property
+    def on_both(self) -> Iterator[tuple[int, Array, Array, Array]]:
+        """Of b, then of a: the body, the place, the force ON it and the moment about the place."""
+        yield self.part.b, self.place, self.force, self.moment
+        yield self.part.a, self.place_a, -self.force, self.moment_on_a
+
+    @property
     def ends(self) -> tuple[ActionEnd, ActionEnd]:
         """Where it acts on b and on a: it may move over both."""
-        return ActionEnd(self.part.b, self.place, None, apart=True), ActionEnd(
-            self.part.a, self.place, None, apart=True
-        )
+        on_b = ActionEnd(self.part.b, self.place, None, apart=True)
+        return on_b, ActionEnd(self.part.a, self.place_a, None, apart=True)
 
 
 @record
@@ -65,6 +78,26 @@ class CouplingLoads:
     rows: tuple[int, ...]
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
+
+    @property
+    def carries(self) -> str:
+        """What its load is called: a moment, where it loads by couples alone; of a rope its tension."""
+        if self.coupling.given.type == "rope":
+            return "tension"
+        return "moment" if self.coupling.rows[0].is_couple else "force"
+
+    @property
+    def sign(self) -> float:
+        """Of its load against its multiplier."""
+        return -1.0 if self.carries == "tension" else 1.0
+
+    @property
+    def carried(self) -> dict[str, Array]:
+        """That load by its name; of a rope that sheaves hold the tension before the first of them, and the last one."""
+        if self.coupling.given.type != "rope":
+            return {self.carries: self.multipliers[0]}
+        found = {"tension": -self.multipliers[0]}
+        return found | ({"last_tension": -self.multipliers[-1]} if len(self.multipliers) > 1 else {})
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
@@ -89,11 +122,10 @@ class CouplingLoads:
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in self.parts:
-            for body, sign in ((part.part.b, 1.0), (part.part.a, -1.0)):
-                at, force, moment = found.get(body, (part.place, np.zeros_like(part.force), np.zeros_like(part.moment)))
-                moment = moment + sign * (part.moment + cross_rows(part.place - at, part.force))
-                found[body] = at, force + sign * part.force, moment
+        for part in sorted(self.parts, key=lambda own: not own.part.lies):  # of sheaves their centres come first
+            for body, place, own, turning in part.on_both:
+                at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
+                found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
         return found
 
 
@@ -118,16 +150,17 @@ def _part_loads(
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
-        f, m, Q = (recovered.parts[name][:, k] for name in ("f", "m", "Q"))
-        yield PartLoad(part, Q, f, m, multiplier)
+        f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
+        yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m + cross_rows(Q - on_a, f), multiplier)
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
     """What they exert, an action a part."""
     return [
-        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment)
+        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
+        if not part.part.lies
     ]
 
 
@@ -137,13 +170,4 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
         for body, (place, force, moment) in loads.on_bodies().items()
     }
-    if loads.coupling.given.type == "rope":
-        return rope_scalars(loads) | {"on": on, "open": []}
-    carried = "moment" if loads.coupling.rows[0].is_couple else "force"
-    return {carried: loads.multipliers[0], "on": on, "open": []}
-
-
-def rope_scalars(loads: CouplingLoads) -> dict[str, object]:
-    """A rope's tension; where sheaves hold it that before the first of them, and that behind the last."""
-    found: dict[str, object] = {"tension": -loads.multipliers[0]}
-    return found | ({"last_tension": -loads.multipliers[-1]} if len(loads.multipliers) > 1 else {})
+    return {**loads.carried, "on": on, "open": []}

@@ -55,6 +55,11 @@ class CouplingPart:
         return self.kind in ("dot", "turn")
 
     @property
+    def lies(self) -> bool:
+        """Whether it is of a rope what lies on a sheave, and loads nothing."""
+        return self.kind in ("arc", "wound")
+
+    @property
     def places(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it looks at them, body axes."""
         if self.is_couple:

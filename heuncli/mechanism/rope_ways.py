@@ -19,7 +19,6 @@ from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, Coupli
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross_rows
 from heuncli.spec import couplings as spec
 
 Z = np.array([0.0, 0.0, 1.0])
@@ -197,7 +196,9 @@ def arc(x: Stay, side: int, before: Array, behind: Array) -> float:
 def way_of(stays: Sequence[Stay], sides: tuple[int, ...]) -> Way | None:
     """The way round given sides; None where there is none."""
     strands = []
-    for (a, s), (b, u) in zip(zip(stays[:-1], sides[:-1], strict=True), zip(stays[1:], sides[1:], strict=True), strict=True):
+    for (a, s), (b, u) in zip(
+        zip(stays[:-1], sides[:-1], strict=True), zip(stays[1:], sides[1:], strict=True), strict=True
+    ):
         found = strand_line(a, b, s, u)
         if found is None:
             return None
@@ -236,7 +237,9 @@ def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> Way:
     if len(found) > 1 and found[1].length - found[0].length <= tolerances.OPEN_GAP * found[0].length:
         k = next(k for k in open_ if found[0].sides[k] != found[1].sides[k])
         message = "past which side of this sheave the rope runs is not said, and both are as short"
-        raise refused(name, k, "rope-side", message, "side: over, under, left (counter-clockwise about the axis) or right")
+        raise refused(
+            name, k, "rope-side", message, "side: over, under, left (counter-clockwise about the axis) or right"
+        )
     return found[0]
 
 
@@ -272,7 +275,9 @@ def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, 
     for k in range(first + 1, last):
         if stays[k].radius:
             x = stays[k]
-            parts.append(CouplingPart("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=k - 1 - first))
+            parts.append(
+                CouplingPart("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=k - 1 - first)
+            )
     for k, strand, sense in ((first, 0, 1.0), (last, count - 1, -1.0)):
         if stays[k].radius:
             parts.append(wound_part(start, stays[k], sense * signed[k], way.strands[first + strand].t, strand))

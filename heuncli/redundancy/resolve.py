@@ -204,15 +204,15 @@ def sums_of(
         values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
     for loads in couplings:
         r = loads.rows[0]
-        at = relative_multipliers(stress, r)
+        at = loads.sign * relative_multipliers(stress, r)
         if np.abs(at).max(initial=0.0) * stress.coupled[r] <= tolerances.OPEN_SHARE:
             continue
-        name = f"couplings.{loads.coupling.name}.{'moment' if loads.coupling.rows[0].is_couple else 'force'}"
+        name = f"couplings.{loads.coupling.name}.{loads.carries}"
         picked = at[:, pick]
         if beside is not None:
-            picked = one_after_the_other(picked, relative_multipliers(beside, r))
+            picked = one_after_the_other(picked, loads.sign * relative_multipliers(beside, r))
         poses[name], asked[name] = picked[0], at[0]
-        values[name] = loads.multipliers[0]
+        values[name] = loads.sign * loads.multipliers[0]
     return certain_sums(poses, asked, values, stress.length)
 
 
