@@ -99,9 +99,9 @@ def lie_free(row: cython.pointer[Closure]) -> cython.void:
 
 
 def arc_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """What of a rope lies on a sheave between the strand that arrives and the next one, which leaves: R times its angle.
+    """What of a rope lies on a sheave between the strand that arrives and the next one, which leaves.
 
-    The angle is that between the strands, about the axis in the sense in which the rope runs round it.
+    R times the angle between the strands, about the axis in the sense in which the rope runs round it.
     """
     n: Vec3 = direction_of(scene, row.a, row.e)
     before: Vec3 = scene.parts[row.part].t

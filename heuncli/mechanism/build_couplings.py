@@ -16,7 +16,8 @@ SIZE = 0.0  # weight of gaps that are angles: the scene's size
 def couplings_of(spec: Spec, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[Coupling, ...]:
     """All couplings, in the order of the spec; number: of the joints by their names."""
     return tuple(
-        Coupling(name, MADE[given.type](given, joints, number), given) for name, given in spec.couplings.items()
+        Coupling(name, MADE[given.type](given, joints, number), given)  # type: ignore[operator]
+        for name, given in spec.couplings.items()
     )
 
 
@@ -35,7 +36,7 @@ def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float)
 
 
 def rope(given: c.Rope, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[CoupledRow, ...]:
-    """None yet: which way it runs is found where the bodies stand (rope_ways.py)."""
+    """None yet: which way it runs is found where the bodies stand (tree/rope_ways.py)."""
     return ()
 
 

@@ -32,7 +32,7 @@ class Ratio(NamedTuple):
 class Passage(NamedTuple):
     """Where a rope passes: a point of a body, radius 0, or a sheave about it.
 
-    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the way that is shortest;
+    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the shortest way;
     grips: the rope does not slip on the sheave.
     """
 

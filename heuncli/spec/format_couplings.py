@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from heuncli.spec.entries import Entry
-from heuncli.spec.fields import AnEnd, AsText, Before, Direction, Length, Number, Switch
+from heuncli.spec.entries import Before, Entry
+from heuncli.spec.fields import AnEnd, AsText, Direction, Length, Number, Switch
 
 
 class RatioEntry(Entry):

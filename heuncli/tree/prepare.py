@@ -50,7 +50,7 @@ def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Pre
 
         mechanism = begun(mechanism, start)
     if any(coupling.given.type == "rope" for coupling in mechanism.couplings):
-        from heuncli.mechanism.rope_ways import with_ropes  # few scenes have them
+        from heuncli.tree.rope_ways import with_ropes  # few scenes have them
 
         mechanism = with_ropes(mechanism, start)
     scene = arranged(mechanism, start, stages=stages)

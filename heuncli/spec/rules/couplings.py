@@ -15,7 +15,8 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        for i, joint in enumerate(coupling.of if isinstance(coupling, f.RatioEntry) else ()):
+        of = coupling.of if isinstance(coupling, f.RatioEntry) else []
+        for i, joint in enumerate(of):
             path = ("couplings", name, "of", i)
             if joint not in joints:
                 yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
@@ -24,7 +25,7 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
             if kind is not None and not kind.coordinates:
                 able = named([kind for kind in TYPES.values() if kind.coordinates], "and")
                 yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
-            if joint in coupling.of[:i]:
+            if joint in of[:i]:
                 yield Violation(path, f"{joint} is coupled to itself", "name another joint")
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -20,8 +20,10 @@ from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.spec import couplings as spec
+from heuncli.tree.starts import joint_start
 
 Z = np.array([0.0, 0.0, 1.0])
+SIDES = "left (counter-clockwise about the axis) or right"
 MOST_SIDES = 10  # sheaves of a rope whose sides are found by trying all: a thousand ways
 
 
@@ -84,9 +86,12 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
     way = way_round(mechanism, coupling.name, stays)
     held = [k for k, x in enumerate(stays) if k in (0, len(stays) - 1) or x.given.grips]
     rows = []
-    for first, last in zip(held[:-1], held[1:], strict=True):
+    for first, last in pairwise(held):
         parts = parts_between(start, stays, way, first, last)
-        length = length_between(stays, way, first, last) if rope.length is None else rope.length
+        length = length_between(stays, way, first, last) + wound_at_start(mechanism, start, parts)
+        if rope.length is not None:
+            require_length(rope, coupling.name, length)
+            length = rope.length
         rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution))
     return replace(coupling, rows=tuple(rows))
 
@@ -113,8 +118,8 @@ def stay(mechanism: Mechanism, start: Assembly, name: str, k: int, given: spec.P
         carrier, joint, sign = along[0]
         turn = Coordinate(joint, "angle", sign)
     elif given.grips:
-        raise refused(name, k, "rope-grip", "the sheave stands on no pin about its axis, and slip: none counts its turn",
-                      "a pin of its body with the sheave's centre on its axis, or a rope that slips")  # fmt: skip
+        message = "the sheave stands on no pin about its axis, whose turn would tell what is wound on it"
+        raise refused(name, k, "rope-grip", message, "a pin of its body through the sheave's centre, or slip: free")
     return Stay(given, body, point, axis, x + R @ point, R @ axis, carrier, turn)
 
 
@@ -185,7 +190,7 @@ def strand_line(a: Stay, b: Stay, side_a: int, side_b: int) -> StrandLine | None
     return StrandLine((l * p + sigma * np.cross(n, p)) / square, length, h / length)
 
 
-def arc(x: Stay, side: int, before: Array, behind: Array) -> float:
+def angle_of_arc(x: Stay, side: int, before: Array, behind: Array) -> float:
     """The angle through which a rope runs round a sheave, at least 0 and less than a whole turn."""
     if not x.radius:
         return 0.0
@@ -196,22 +201,20 @@ def arc(x: Stay, side: int, before: Array, behind: Array) -> float:
 def way_of(stays: Sequence[Stay], sides: tuple[int, ...]) -> Way | None:
     """The way round given sides; None where there is none."""
     strands = []
-    for (a, s), (b, u) in zip(
-        zip(stays[:-1], sides[:-1], strict=True), zip(stays[1:], sides[1:], strict=True), strict=True
-    ):
-        found = strand_line(a, b, s, u)
+    for (a, side_a), (b, side_b) in pairwise(zip(stays, sides, strict=True)):
+        found = strand_line(a, b, side_a, side_b)
         if found is None:
             return None
         strands.append(found)
     inner = zip(stays[1:-1], sides[1:-1], strands[:-1], strands[1:], strict=True)
-    arcs = (0.0, *(arc(x, s, before.t, behind.t) for x, s, before, behind in inner), 0.0)
+    arcs = (0.0, *(angle_of_arc(x, s, before.t, behind.t) for x, s, before, behind in inner), 0.0)
     length = sum(x.length for x in strands) + sum(x.radius * angle for x, angle in zip(stays, arcs, strict=True))
     return Way(sides, tuple(strands), arcs, length)
 
 
 def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> Way:
     """The way that a rope runs: past the sides that are named, else the shortest. Raises SolveError."""
-    for k, (a, b) in enumerate(zip(stays[:-1], stays[1:], strict=True)):
+    for k, (a, b) in enumerate(pairwise(stays)):
         if a.radius and b.radius and not parallel(a.normal, b.normal):
             message = "the axes of this sheave and of the one before are not parallel, so that no strand lies in both"
             hint = "a plain point between them, or in place of one of them"
@@ -219,7 +222,7 @@ def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> Way:
     open_ = [k for k, x in enumerate(stays) if x.radius and x.given.side not in ("left", "right")]
     if len(open_) > MOST_SIDES:
         message = f"past which sides of {len(open_)} sheaves the rope runs is not said"
-        raise refused(name, open_[0], "rope-side", message, "side: left (counter-clockwise about the axis) or right")
+        raise refused(name, open_[0], "rope-side", message, f"side: {SIDES}")
     up = up_in(mechanism)
     known = [{"left": 1, "right": -1}.get(x.given.side or "", 0) if x.radius else 0 for x in stays]
     found = []
@@ -232,14 +235,12 @@ def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> Way:
             found.append(way)
     if not found:
         message = "no way round the sheaves as their sides are named: one of them is in the way of a strand"
-        raise refused(name, None, "rope-side", message, "side: left (counter-clockwise about the axis) or right")
+        raise refused(name, None, "rope-side", message, f"side: {SIDES}")
     found.sort(key=lambda way: way.length)
     if len(found) > 1 and found[1].length - found[0].length <= tolerances.OPEN_GAP * found[0].length:
         k = next(k for k in open_ if found[0].sides[k] != found[1].sides[k])
         message = "past which side of this sheave the rope runs is not said, and both are as short"
-        raise refused(
-            name, k, "rope-side", message, "side: over, under, left (counter-clockwise about the axis) or right"
-        )
+        raise refused(name, k, "rope-side", message, f"side: over, under, {SIDES}")
     return found[0]
 
 
@@ -273,11 +274,10 @@ def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, 
     signed = [s * x.radius for s, x in zip(way.sides, stays, strict=True)]
     parts = [strand_part(stays[k], stays[k + 1], signed[k], signed[k + 1]) for k in range(first, last)]
     for k in range(first + 1, last):
-        if stays[k].radius:
-            x = stays[k]
-            parts.append(
-                CouplingPart("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=k - 1 - first)
-            )
+        x, strand = stays[k], k - 1 - first
+        if x.radius:
+            own = CouplingPart("arc", x.body, x.body, x.point, x.point, x.axis, radius=signed[k], strand=strand)
+            parts.append(own)
     for k, strand, sense in ((first, 0, 1.0), (last, count - 1, -1.0)):
         if stays[k].radius:
             parts.append(wound_part(start, stays[k], sense * signed[k], way.strands[first + strand].t, strand))
@@ -307,3 +307,20 @@ def length_between(stays: Sequence[Stay], way: Way, first: int, last: int) -> fl
     """How long the rope is between two places where it is held."""
     length = sum(way.strands[k].length for k in range(first, last))
     return length + sum(stays[k].radius * way.arcs[k] for k in range(first + 1, last))
+
+
+def wound_at_start(mechanism: Mechanism, start: Assembly, parts: Sequence[CouplingPart]) -> float:
+    """What the turns of sheaves at the start make of a condition's length."""
+    counted = [turn for part in parts for turn in part.coordinates]
+    return sum(x.ratio * joint_start(mechanism, start, mechanism.joints[x.joint]).angle for x in counted)
+
+
+def require_length(rope: spec.Rope, name: str, way: float) -> None:
+    """Raise SolveError for a rope that is shorter than its way, or longer and cannot go slack."""
+    beyond = way - rope.length if rope.length is not None else 0.0
+    if beyond > tolerances.OPEN_GAP * way or (rope.restitution is None and beyond < -tolerances.OPEN_GAP * way):
+        message = f"is {rope.length:.10g} m long, and its way as assembled {way:.10g} m"
+        hint = "leave length out: as assembled; or give the bodies' places so that it fits"
+        if beyond < 0.0:
+            hint = "tension_only and restitution: it is slack at first; or leave length out: as assembled"
+        raise refused(name, None, "does-not-fit", message, hint)
