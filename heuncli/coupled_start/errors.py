@@ -32,18 +32,24 @@ def too_many(layout: Layout, row: int, bodies: int) -> SolveError:
     """More bodies than are fitted at once hang together by the coupling of a row."""
     name, about, _ = _owner(layout, np.array([row]), np.ones(1))
     message = f"{name} ties {bodies:,} bodies together whose start does not fit yet: more than are fitted at once"
-    return SolveError(Problem("too-many-together", message, hint="give the velocities of more of its bodies", about=about))
+    return SolveError(
+        Problem("too-many-together", message, hint="give more of its velocities", about=about)
+    )
 
 
 def _owner(layout: Layout, rows: Indices, left: Array) -> tuple[str, str, str]:
-    """Who asks for the row with most left: in words, as the path of its entry, and the two bodies."""
-    row = int(rows[int(np.argmax(np.abs(left)))])
-    mechanism, k = layout.mechanism, layout.rows[row]
-    closure = layout.tables["closures"][row]
-    places = {place: body for body, place in layout.place.items()}
-    bodies = " and ".join(_name(mechanism, places.get(int(closure[end]), GROUND)) for end in ("a", "b"))
-    joint = mechanism.joints[k]
-    return f"joint {joint.name} ({joint.kind})", f"joints.{joint.name}", bodies
+    """Who asks for the row with most left: in words, as the path of its entry, and its bodies."""
+    mechanism = layout.mechanism
+    k = layout.rows[int(rows[int(np.argmax(np.abs(left)))])]
+    joints = len(mechanism.joints)
+    if k < joints:
+        joint = mechanism.joints[k]
+        what, bodies = f"joint {joint.name} ({joint.kind})", {joint.a, joint.b}
+    else:
+        coupling = mechanism.couplings[k - joints]
+        what, bodies = f"coupling {coupling.name} ({coupling.given.type})", set(coupling.bodies)
+    names = [_name(mechanism, i) for i in sorted(bodies)]
+    return what, mechanism.owner(k), " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 
 def _name(mechanism: Mechanism, body: int) -> str:

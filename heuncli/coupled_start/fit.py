@@ -88,7 +88,7 @@ class CoupledFit:
     # Poses
 
     def fit_poses(self) -> Array:
-        """Change the coordinates until all rows are closed; what is left of the couplings' gaps [m], of `asked.poses`."""
+        """Change the coordinates until all rows are closed; what is left of the gaps of `asked.poses` [m]."""
         told, now = self.now()
         gap = self._gap(told, now)
         for _ in range(STEPS):

@@ -35,7 +35,7 @@ class Motion:
         if body < 0:
             return np.zeros((3, self.turns.shape[2]))
         arm = place - self.x[body]
-        return np.asarray(self.v[body] + cross_rows(self.turns[body].T, np.broadcast_to(arm, self.turns[body].T.shape)).T)
+        return np.asarray(self.v[body] + np.cross(self.turns[body], arm[:, None], axis=0))
 
     def of_turn(self, body: int) -> Array:
         """How the body turns, (3, n)."""
@@ -51,7 +51,7 @@ class Freedoms:
         self.workspace = unsettled(layout)
         rate_at = places_of_rates(layout)
         own = [n for i in sorted(bodies) for n in _answers(layout, i) if rate_at[n] >= 0]
-        self.answers = np.array(own, dtype=int)
+        self.answers: Indices = np.array(own, dtype=int)
         self.rate_at: Indices = rate_at[self.answers]
         self.all_rates: Indices = rate_at[rate_at >= 0]
 
@@ -112,7 +112,7 @@ def _answers(layout: Layout, i: int) -> range:
 
 
 def concerned(layout: Layout, rows: Iterable[int]) -> list[int]:
-    """The bodies (places in the tree) of the trees on the ground that some closure rows tie, themselves or by others."""
+    """The bodies (places in the tree) of all trees on the ground that some closure rows tie, with others' help."""
     parents = layout.bodies["parent"]
     root = list(range(len(parents)))
     for i, parent in enumerate(parents.tolist()):

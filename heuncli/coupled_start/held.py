@@ -43,7 +43,10 @@ def held_rates(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[
     for i, body in enumerate(scene.mechanism.bodies):
         if body.angular_velocity is not None:
             seen = _determined(i, scene.idle, now.rotation[i])
-            yield seen @ motion.turns[i], seen @ (_world(body.angular_velocity, now.rotation[i]) - now.angular_velocity[i])
+            yield (
+                seen @ motion.turns[i],
+                seen @ (_world(body.angular_velocity, now.rotation[i]) - now.angular_velocity[i]),
+            )
         if body.velocity is not None:
             yield motion.v[i] / size, (_world(body.velocity, now.rotation[i]) - now.velocity[i]) / size
     for joint in scene.mechanism.joints:
@@ -56,9 +59,8 @@ def held_rates(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[
 
 def _along(joint: Joint, now: Assembly, motion: Motion, size: float) -> Rows:
     """How the freedoms turn a joint about its axis, and shift it along (by the size), (1, n) each."""
-    xa, Ra, _, _ = pose(now, joint.a)
     xb, Rb, _, _ = pose(now, joint.b)
-    n, Q = Ra @ joint.axis, xb + Rb @ joint.q
+    n, Q = pose(now, joint.a)[1] @ joint.axis, xb + Rb @ joint.q
     turning = n @ (motion.of_turn(joint.b) - motion.of_turn(joint.a))
     sliding = n @ (motion.of_point(joint.b, Q) - motion.of_point(joint.a, Q)) / size
     return turning[None, :], sliding[None, :]
@@ -92,5 +94,3 @@ def _determined(body: int, idle: tuple[IdleSpin, ...], R: Array) -> Array:
     """Projects an angular velocity onto what is determined of it, (3, 3)."""
     axes = next((spin.axes @ R.T for spin in idle if spin.body == body), np.zeros((0, 3)))
     return np.eye(3) - axes.T @ axes
-
-

@@ -11,7 +11,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.coupled_start.errors import poses_do_not_fit, rates_do_not_fit, too_many
 from heuncli.coupled_start.fit import AskedRows, CoupledFit
-from heuncli.coupled_start.freedoms import concerned
+from heuncli.coupled_start.freedoms import Freedoms, concerned
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
 from heuncli.results import Array
@@ -20,6 +20,26 @@ from heuncli.tree.prepare import PreparedScene, arranged
 from heuncli.tree.starts import JointStart, joint_start, unwrapped
 
 TOGETHER = 2000  # freedoms that are fitted at once: dense matrices of them must fit into memory and patience
+
+
+def asked_of(scene: PreparedScene) -> AskedRows:
+    """The rows that a start has to meet: of the joints those that always hold, of the couplings all that bear.
+
+    A rope that may go slack asks for its length where its points are too far apart, and for its rate where it is taut.
+    """
+    layout, joints = scene.layout, len(scene.mechanism.joints)
+    slack = {contact.row for contact in layout.contacts}
+    own = [r for r, k in enumerate(layout.rows) if k < joints and r not in slack]
+    coupled = [row for coupling in scene.mechanism.couplings for row in coupling.rows]
+    numbered = dict(zip((r for r, k in enumerate(layout.rows) if k >= joints), coupled, strict=True))
+    taut = np.zeros(0)
+    if slack & numbered.keys():
+        freedoms = Freedoms(layout, 0.0, ())
+        taut = freedoms.measured(layout.y0).gaps
+    near = tolerances.OPEN_GAP * layout.size
+    poses = [r for r, row in numbered.items() if row.length is not None and (r not in slack or taut[r] > near)]
+    rates = [r for r in numbered if r not in slack or taut[r] >= -near]
+    return AskedRows(*(np.array(rows, dtype=int) for rows in (own, poses, rates)))
 
 
 def fitted(scene: PreparedScene, t: float, asked: AskedRows) -> PreparedScene:

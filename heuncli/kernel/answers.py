@@ -132,7 +132,7 @@ def recover_state(
 def put_measured(
     scene: cython.pointer[Scene], bodies: cython.p_double, gaps: cython.p_double, rates: cython.p_double
 ) -> cython.void:
-    """All bodies, as `put_body`, and of each closure row gap and rate, as they stand: nothing is settled or answered."""
+    """All bodies, as `put_body`, and gap and rate of each closure row, as they stand: nothing is settled."""
     i: cython.Py_ssize_t
     at: cython.Py_ssize_t = 0
     for i in range(scene.body_count):
