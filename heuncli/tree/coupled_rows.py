@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
+from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.mechanism.model import Assembly
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 from heuncli.tree.starts import pose
@@ -17,7 +17,9 @@ InTree = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
 
 
-def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]) -> ClosureRow:
+def part_row(
+    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+) -> ClosureRow:
     """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
@@ -44,7 +46,7 @@ def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[in
     return sum(part.factor * _gap(part, start, coordinates) for part in row.parts)
 
 
-def _gap(part: Part, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
     if part.coordinates:
         return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
     xa, Ra, _, _ = pose(start, part.a)
