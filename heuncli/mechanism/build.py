@@ -75,7 +75,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     if spec.couplings:
         from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
+        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,

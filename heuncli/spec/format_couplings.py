@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
-from heuncli.spec.entries import Entry
+from heuncli.spec.entries import Entry, key
 from heuncli.spec.fields import AnEnd, Angle, Anything, Force, Length, Number, Switch
 
 
@@ -13,7 +14,8 @@ class RatioEntry(Entry):
 
     type: Literal["ratio"]
     of: list[str]
-    factors: list[Number]
+    factors: list[Anything]
+    is_: Anything | None = key("is", None)
 
 
 class GearEntry(Entry):
@@ -55,9 +57,7 @@ class DifferentialEntry(Entry):
     ratio: Number = -1.0
 
 
-CouplingEntry = Annotated[
-    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry, Field(discriminator="type")
-]
-COUPLINGS: dict[str, type[Entry]] = {
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry
+COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
 }  # fmt: skip
