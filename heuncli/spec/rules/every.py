@@ -9,6 +9,7 @@ from heuncli.spec.rules import (
     curves,
     expect,
     joints,
+    latches,
     loads,
     methods,
     naming,
@@ -22,7 +23,7 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, sections, analysis, methods, conditions,
+    naming, references, bodies, products, joints, plane, loads, stops, latches, sections, analysis, methods, conditions,
     expect, curves, not_yet,
 )  # fmt: skip
 
