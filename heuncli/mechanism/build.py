@@ -63,10 +63,13 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
+    conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
     if planar:
-        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
+        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
+            loads, values, joints
+        )
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
@@ -84,9 +87,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(
-            Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
-        ),
+        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
         conditions=conditions,
         points=points,
         couplings=couplings,
@@ -245,3 +246,8 @@ def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     return Blow(
         b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
     )  # fmt: skip
+
+
+def stop(s: m.Stop[str], joint: int) -> Stop:
+    """A stop or a latch of a joint's coordinate."""
+    return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

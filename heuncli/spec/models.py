@@ -289,8 +289,35 @@ class Blow(Generic[Ref, V]):
 
 
 @record
+class Latch:
+    """What of a latch its stop does not tell: where it catches, from when on, and when it lets go.
+
+    at: the coordinate at which it catches [rad] or [m]; stop: else at the limits of that stop which are told by their
+    sides (-1 the lower, 1 the upper); neither: wherever the coordinate is. when: only while this is true, None: always;
+    release: lets go, and does not catch, while this is true, None: never; every: again, after it was released.
+    passes: that the coordinate is beyond `at`, so that a motion through it is met.
+    """
+
+    at: float | None
+    stop: str | None
+    sides: tuple[int, ...]
+    when: Condition | None
+    release: Condition | None
+    passes: Condition | None
+    every: bool
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What it hangs on."""
+        return tuple(c for c in (self.when, self.release, self.passes) if c is not None)
+
+
+@record
 class Stop(Generic[Ref]):
-    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
+    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1.
+
+    latch: what holds the coordinate both ways, without limits of its own.
+    """
 
     name: str
     joint: Ref
@@ -298,6 +325,7 @@ class Stop(Generic[Ref]):
     low: float | None
     high: float | None
     restitution: float = 0.0
+    latch: Latch | None = None
 
 
 class Properties(NamedTuple):
@@ -434,6 +462,7 @@ class Spec(NamedTuple):
     forces: Mapping[str, Force]
     impulses: Mapping[str, Blow[str, Vec]]
     stops: Mapping[str, Stop[str]]
+    latches: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
     tables: Mapping[str, TableFunction]
     analysis: Analysis

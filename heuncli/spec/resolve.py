@@ -9,6 +9,7 @@ from collections.abc import Mapping
 from typing import Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
+from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
@@ -20,7 +21,17 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.resolve_couplings import meant
-from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
+from heuncli.spec.semantics import (
+    body_axes,
+    drive_of,
+    end_of,
+    held_of,
+    instants_of,
+    limits_of,
+    point_in,
+    tensor,
+    type_of,
+)
 from heuncli.spec.turns import IDENTITY
 
 DEFAULT_TOLERANCE = 1e-9
@@ -58,6 +69,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
         couplings=r.entries("couplings", "coupling"),
+        latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
         analysis=r.single("analysis"),
@@ -302,6 +314,22 @@ class Resolver:
         assert found is not None
         quantity, (low, high) = found
         return m.Stop(name, given.joint, quantity, low, high, given.restitution)
+
+    def latch(self, name: str, given: f.LatchEntry) -> m.Stop[str]:
+        held = held_of(given, self.document)
+        assert held is not None
+        passes = None
+        if held.at is not None:
+            beyond = f"{held.joint}.{held.quantity} > {held.at!r}"
+            kind = self.document.joints[held.joint].type
+            passes = compile_expression(beyond, Scope(joints={held.joint: kind}, in_time=True))
+        path = f"latches.{name}"
+        when, release, crossed = (
+            m.Condition(path, value.source.strip(), False, self.placed(value, f"{path}.{key}")) if value else None
+            for key, value in (("when", given.when), ("release", given.release), ("angle", passes))
+        )
+        latch = m.Latch(held.at, given.stop, held.sides, when, release, crossed, given.every)
+        return m.Stop(name, held.joint, held.quantity, None, None, 0.0, latch)
 
 
 def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
