@@ -218,6 +218,10 @@ ROWS: tuple[Quantity, ...] = (
         scalar("value", "N | N·m")),
     *at("forces.FORCE", "distance of its two points", scalar("length", "m")),
     *at("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
+        vector("shift", "m"), vector("turn", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
     *at("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
     *at("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
@@ -402,7 +406,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "angle", "rate") else "forces"
+        return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
     if number.startswith("energy_"):
         return "energy"
     return ESTIMATES.get(kind, "motion")

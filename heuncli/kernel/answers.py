@@ -46,6 +46,7 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     at = put(out, at, load.moment)
     at = put(out, at, load.at)
     at = put(out, at, load.from_at)
+    at = put(out, at, load.strain)
     out[at] = load.value
     out[at + 1] = load.span
     out[at + 2] = load.rate

@@ -14,7 +14,9 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Directed,
+    Elastic,
     Joint,
     JointLoad,
     Load,
@@ -211,16 +213,22 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (None, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
-        case m.Torque():
+        case m.Bushing():
+            return bushing(name, f, index)
+        case m.Torque() | m.Motor():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
+            if f.torque is not None:
+                return JointLoad(name, "torque", k, f.torque)
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
         case m.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
+            if f.law is not None:
+                return JointLoad(name, "torque", k, f.law)
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
@@ -229,10 +237,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> Bushing:
+    """Six springs and dampers."""
+
+    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
+
+    a, b = f.from_, f.to
+    return Bushing(
+        name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
+        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+    )  # fmt: skip
+
+
 def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     """Friction of a given size, or by what of the joint's own load presses."""
     if f.coefficient is None:
-        return JointLoad(name, "friction", joint, None, f.torque or 0.0, f.force or 0.0, f.speed)
+        of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
+        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
     turning, speed = f.coefficient * (f.radius or 0.0), f.speed
     if f.radius is not None:
         return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")

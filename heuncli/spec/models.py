@@ -207,23 +207,25 @@ class Actuator(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """A spring and damper between two points: N/m, free length [m], N s/m."""
+    """A spring and damper between two points: N/m, free length [m], N s/m; or its force [N], positive pushes apart."""
 
     from_: End
     to: End
     stiffness: float
     length: float
     damping: float = 0.0
+    force: Expression | None = None
     type: Literal["spring"] = "spring"
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s."""
+    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s; or its torque [N m]."""
 
     joint: str
     stiffness: float
     angle: float
     damping: float = 0.0
+    torque: Expression | None = None
     type: Literal["turn_spring"] = "turn_spring"
 
 
@@ -239,25 +241,62 @@ class Distributed(NamedTuple):
     type: Literal["distributed"] = "distributed"
 
 
+@record
+class Elastic(Generic[V]):
+    """Three springs and dampers of a bushing, of its shift or of its turn, along its axes.
+
+    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; given: what it exerts beside, [N] or [N m]: a preload, or
+    in place of a stiffness what hangs on the deflection.
+    """
+
+    stiffness: V
+    damping: V
+    given: Vector
+
+
+class Bushing(NamedTuple):
+    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: those in that of `to`."""
+
+    from_: End
+    to: End
+    shift: Elastic[Vec]
+    turn: Elastic[Vec]
+    rotation: Matrix
+    to_rotation: Matrix
+    type: Literal["bushing"] = "bushing"
+
+
+class Motor(NamedTuple):
+    """A motor in a joint: torque ON `to` [N m], opposite on `from`, by the joint's rate."""
+
+    joint: str
+    value: Expression
+    type: Literal["motor"] = "motor"
+
+
 class Damper(NamedTuple):
-    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder)."""
+    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder).
+
+    Or its torque [N m] or force [N] ON `to`, by the joint's rate.
+    """
 
     joint: str
     coefficient: float
     sliding: float | None = None
+    law: Expression | None = None
     type: Literal["damper"] = "damper"
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed).
+    """Coulomb friction in a joint, torque [N m] or force [N], in time, times tanh(rate/speed).
 
     Or coefficient: of what presses, the joint's own force; about a pin at a radius [m]. length [m]: of a guide at whose
     two ends it presses.
     """
 
     joint: str
-    torque: float | None
-    force: float | None
+    torque: Expression | None
+    force: Expression | None
     speed: float
     coefficient: float | None = None
     radius: float | None = None
@@ -265,7 +304,9 @@ class Friction(NamedTuple):
     type: Literal["friction"] = "friction"
 
 
-Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
+Force = (
+    PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction | Motor | Bushing
+)
 
 
 @record
