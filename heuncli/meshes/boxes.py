@@ -23,6 +23,8 @@ LEAF = 4  # boxes
 
 def overlapping(low: Array, high: Array) -> Iterator[tuple[Numbers, Numbers]]:
     """Pairs of boxes (n, 3) that touch or overlap, each once, some at a time. Raises Finding where there are too many."""
+    if not len(low):
+        return
     order = along_curve(0.5 * (low + high))
     count = 1 << max(0, int(np.ceil(np.log2(max(len(order) / LEAF, 1.0)))))
     padded = np.full(count * LEAF, -1, dtype=np.intp)

@@ -1,8 +1,9 @@
 """Whether triangles of a closed surface cross each other.
 
-Two surfaces cross where an edge of the one comes out behind a triangle of the other; or they run into each other along
-faces of one plane, which then lie on one another turned alike (turned apart they touch, as two bodies do that stand on
-each other). What goes no deeper than the digits of the corners is rounding, and touches.
+Two surfaces cross where an edge of the one comes out behind a triangle of the other, be it at its rim; or they run into
+each other along faces of one plane, which then lie on one another turned alike (turned apart they touch, as two bodies
+do that stand on each other). What goes no deeper than the digits of the corners is rounding, and touches. Edges that
+touch crosswise are taken for a crossing: that they are none is seen in no pair of triangles.
 """
 
 from __future__ import annotations
@@ -29,10 +30,10 @@ def require_no_crossing(corners: Array, triangles: Numbers, near: float) -> None
     flat = double <= near * np.sqrt(((places[:, 1] - places[:, 0]) ** 2).sum(axis=1))
     normals = normals / np.where(double > 0.0, double, 1.0)[:, None]
     offsets = (normals * places[:, 0]).sum(axis=1)
-    low[flat], high[flat] = np.inf, -np.inf  # what has no area crosses nothing
+    thick = np.flatnonzero(~flat)  # what has no area crosses nothing
     count, where = 0, np.zeros(3)
-    for a, b in overlapping(low, high):
-        a, b = _not_aside(places, normals, offsets, a, b, near)
+    for one, other in overlapping(low[thick], high[thick]):
+        a, b = _not_aside(places, normals, offsets, thick[one], thick[other], near)
         met = _pierced(places, normals, offsets, a, b, near) | _pierced(places, normals, offsets, b, a, near)
         met |= _on_each_other(places, normals, offsets, a, b, near)
         if met.any():
@@ -70,7 +71,7 @@ def _not_aside(
 
 
 def _pierced(places: Array, normals: Array, offsets: Array, a: Numbers, b: Numbers, near: float) -> Mask:
-    """Whether an edge of a goes through b, well inside it."""
+    """Whether an edge of a goes through b."""
     h = _heights(places, normals, offsets, a, b)
     met = np.zeros(len(a), dtype=bool)
     for i, j in NEXT:
@@ -85,13 +86,13 @@ def _pierced(places: Array, normals: Array, offsets: Array, a: Numbers, b: Numbe
 
 
 def _is_inside(point: Array, triangle: Array, normal: Array, near: float) -> Mask:
-    """Whether points (k, 3) in the planes of triangles (k, 3, 3) lie in them, farther than near from their edges."""
+    """Whether points (k, 3) in the planes of triangles (k, 3, 3) lie in them, or not farther than near outside."""
     inside = np.ones(len(point), dtype=bool)
     for i, j in NEXT:
         edge = triangle[:, j] - triangle[:, i]
         inward = crossed(normal, edge)
         length = np.sqrt((edge * edge).sum(axis=1))
-        inside &= (inward * (point - triangle[:, i])).sum(axis=1) > near * length
+        inside &= (inward * (point - triangle[:, i])).sum(axis=1) >= -near * length
     return inside
 
 

@@ -29,8 +29,6 @@ KINDS = "STL, OBJ or PLY, named so: rod.stl"
 def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
     """The closed mesh in a file of this name. Raises Finding: mesh-file, open-mesh and the like."""
     soup = welded(soup_of(bytes(content), name))
-    if not len(soup.triangles):
-        raise refused("there are no triangles in it", "a solid's surface, in triangles")
     notes: list[str] = []
     loose = loose_corners(soup.triangles)
     if len(loose):
@@ -39,6 +37,8 @@ def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
         joined = before - len(np.unique(soup.triangles))
         if joined and not len(loose_corners(soup.triangles)):
             notes.append(f"corners less than {resolution(soup.corners):.2g} of its units apart were taken as one")
+    if not len(soup.triangles):
+        raise refused("there are no triangles in it", "a solid's surface, in triangles")
     shells = shells_of(soup)
     require_no_crossing(soup.corners, shells.triangles, resolution(soup.corners))
     if shells.turned:

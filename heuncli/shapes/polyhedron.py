@@ -24,7 +24,7 @@ from heuncli.results import Array, Indices
 from heuncli.shapes.crossed_triangles import AT_ONCE, Crossings, crossings, levels, loops, met_at
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import Outline, Planes
-from heuncli.shapes.rotations import perpendicular
+from heuncli.shapes.rotations import cross, perpendicular
 from heuncli.shapes.solids import Thick
 
 MOST_LEVELS = 100  # heights of corners along a normal up to which each is a corner of the cross-sections
@@ -98,8 +98,10 @@ class Polyhedron(Thick):
         G[:3, 3] = self.middle
         return np.asarray(self.density * (G @ assembled(np.array(mass), first, second) @ G.T))
 
-    def local(self, n: Array, d: Array) -> LocalSurface:
-        axes = np.stack([*perpendicular(n), n], axis=1)
+    def local(self, n: Array, d: Array, e1: Array | None = None) -> LocalSurface:
+        """The surface before planes; e1: the first axis in them."""
+        first = perpendicular(n) if e1 is None else (e1, cross(n, e1))
+        axes = np.stack([*first, n], axis=1)
         X = (self.corners_at - self.middle) @ axes
         heights = d - n @ self.middle
         order = np.argsort(heights, kind="stable")
@@ -178,8 +180,8 @@ class Polyhedron(Thick):
         moments = np.zeros((3, len(d)))
         for c in self.crossed(at):
             p, q = met_at(at.X, c)
-            cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-            terms = (0.5 * cross, (p[:, 0] + q[:, 0]) * cross / 6.0, (p[:, 1] + q[:, 1]) * cross / 6.0)
+            twice = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
+            terms = (0.5 * twice, (p[:, 0] + q[:, 0]) * twice / 6.0, (p[:, 1] + q[:, 1]) * twice / 6.0)
             moments += np.array([np.bincount(c.plane, term, len(d)) for term in terms])
         areas, first = np.empty(len(d)), np.empty((len(d), 3))
         areas[at.order] = moments[0]
@@ -219,8 +221,7 @@ class Polyhedron(Thick):
         for c in self.crossed(at):
             line = loops(c, len(self.corners_at), len(at.D))
             p, q = met_at(at.X, c)
-            cross = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-            areas = np.bincount(line, 0.5 * cross)
+            areas = np.bincount(line, 0.5 * (p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
             around = np.bincount(line, np.sqrt(((q - p) ** 2).sum(axis=1)))
             plane = np.zeros(len(areas), dtype=np.intp)
             plane[line] = c.plane
