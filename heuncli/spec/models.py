@@ -12,13 +12,16 @@ import math
 from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.spec.couplings import Coupling
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -51,9 +54,12 @@ class Ground(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of a body: one of mass, density, line_density is given; of the measures those its type has."""
+    """A part of a body: one of mass, density, line_density is given; of the measures those its type has.
 
-    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point"]
+    A mesh stands in the units and axes of its file: a corner x is at + rotation (scale x) [m].
+    """
+
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
     mass: float | None = None
     density: float | None = None
     line_density: float | None = None
@@ -66,6 +72,8 @@ class Shape(NamedTuple):
     radius: float | None = None
     inner_radius: float | None = None
     to_radius: float | None = None
+    scale: float | None = None
+    mesh: TriangleMesh | None = None
 
 
 @record

@@ -6,7 +6,7 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.composed import product, renamed, total, with_factor, within
@@ -35,6 +35,9 @@ from heuncli.spec.semantics import (
 )
 from heuncli.spec.turns import IDENTITY
 
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
+
 DEFAULT_TOLERANCE = 1e-9
 
 
@@ -49,12 +52,13 @@ class Meaning:
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
     curves: Mapping[int, m.Curve]
+    surfaces: Mapping[str, TriangleMesh]
     case: str | None
 
 
 def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
     """The scene that a document without errors means; by: what follows the references, one of them by default."""
-    r = by or Resolver(document, meaning.locations, meaning.curves)
+    r = by or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
     return m.Spec(
         title=titled(document, meaning.case),
         path=meaning.path,
@@ -96,9 +100,13 @@ class Resolver:
     """Follows the references of one document."""
 
     def __init__(
-        self, document: f.Document, locations: Mapping[str, SourceLocation], curves: Mapping[int, m.Curve]
+        self,
+        document: f.Document,
+        locations: Mapping[str, SourceLocation],
+        curves: Mapping[int, m.Curve],
+        surfaces: Mapping[str, TriangleMesh],
     ) -> None:
-        self.document, self.locations, self.curves = document, locations, curves
+        self.document, self.locations, self.curves, self.surfaces = document, locations, curves, surfaces
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean; by: the method that tells it of one."""
@@ -153,9 +161,14 @@ class Resolver:
             "to_radius",
         )
         rotation = None
-        if isinstance(shape, fs.BoxShape):
+        if isinstance(shape, fs.BoxShape | fs.MeshShape):
             rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
-        return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        meant = m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        if not isinstance(shape, fs.MeshShape):
+            return meant
+        return meant._replace(
+            at=shape.at or m.ZERO, scale=1.0 if shape.scale is None else shape.scale, mesh=self.surfaces[shape.file]
+        )
 
     def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
         return m.MassProperties(piece.mass, piece.center, tensor(piece)) if piece is not None else None
