@@ -27,6 +27,10 @@ SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a 
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
+# -- couplings: what of a drawing decides whether gears fit
+TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
+TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
+
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
 NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
 OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
