@@ -66,6 +66,11 @@ class CouplingLoads:
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
 
+    @property
+    def carries(self) -> str:
+        """What its load is called: a moment, where it loads by couples alone."""
+        return "moment" if self.coupling.rows[0].is_couple else "force"
+
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
         own = tuple(multipliers[..., r] for r in self.rows)
@@ -137,5 +142,4 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
         for body, (place, force, moment) in loads.on_bodies().items()
     }
-    carried = "moment" if loads.coupling.rows[0].is_couple else "force"
-    return {carried: loads.multipliers[0], "on": on, "open": []}
+    return {loads.carries: loads.multipliers[0], "on": on, "open": []}

@@ -99,11 +99,12 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
 
 def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> None:
     """Open components of a coupling's block, in place: of what it carries, and of what it exerts ON each body."""
-    name = "moment" if loads.coupling.rows[0].is_couple else "force"
+    name = loads.carries
     length = stress.length if name == "moment" else 1.0
     row = stress.multipliers[:, loads.rows[0]][:, None]
     parts = {name: np.asarray(stress.reaches(row, length)[:, 0])}
-    block[name] = opened(block[name], parts[name])
+    for own in (block, *block.get("shares", {}).values()):
+        own[name] = opened(own[name], parts[name])
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]
     for i, (end, own) in enumerate(block["on"].items()):

@@ -207,7 +207,7 @@ def sums_of(
         at = relative_multipliers(stress, r)
         if np.abs(at).max(initial=0.0) * stress.coupled[r] <= tolerances.OPEN_SHARE:
             continue
-        name = f"couplings.{loads.coupling.name}.{'moment' if loads.coupling.rows[0].is_couple else 'force'}"
+        name = f"couplings.{loads.coupling.name}.{loads.carries}"
         picked = at[:, pick]
         if beside is not None:
             picked = one_after_the_other(picked, relative_multipliers(beside, r))
