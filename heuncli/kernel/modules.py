@@ -7,6 +7,7 @@ MODULES = (
     "jets",
     "intervals",
     "enclosure",
+    "paths",
     "plane",
     "plane_rows",
     "tree",

@@ -27,6 +27,7 @@ if not cython.compiled:
         Lent,
         Limits,
         Load,
+        Piece,
         Scene,
         Variable,
         Watch,
@@ -70,6 +71,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.loads = cython.cast(cython.pointer[Load], memory.rows(tables["loads"], cython.sizeof(Load)))
         scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
         scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
+        scene.pieces = cython.cast(cython.pointer[Piece], memory.rows(tables["pieces"], cython.sizeof(Piece)))
         scene.variables = cython.cast(
             cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
         )
@@ -94,6 +96,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.loads = [Load(row) for row in tables["loads"].tolist()]
         scene.closures = [Closure(row) for row in tables["closures"].tolist()]
         scene.counters = [Counter(row) for row in tables["counters"].tolist()]
+        scene.pieces = [Piece(row) for row in tables["pieces"].tolist()]
         scene.variables = [Variable(row) for row in tables["variables"].tolist()]
         scene.lents = [Lent(row) for row in tables["lents"].tolist()]
         scene.islands = [Island(row) for row in tables["islands"].tolist()]

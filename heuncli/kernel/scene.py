@@ -79,8 +79,16 @@ class Freedom(Record):
     program: Program  # of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
     offset: float  # of the coordinate against the drive's
+    path: int  # of a point that runs along a path: its first piece
+    pieces: int  # and how many it has; 0: its direction is fixed
+    period: float  # of the coordinate, where the path is closed; else 0
+    reach: float  # bounds of the path's |r|, |r'| and |r''|
+    slope: float
+    bend: float
 
-    s: Vec3  # its direction
+    s: Vec3  # its direction, of unit length or, along a path, r'
+    curved: Vec3  # along a path r'', else zero
+    twisted: Vec3  # and r'''
     U_turn: Vec3  # inertia against it, I s: moment and force
     U_shift: Vec3
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
@@ -206,6 +214,25 @@ class Contact(Record):
     rate_bent: float
     rate_before: float
     rate_first: float
+
+
+class Piece(Record):
+    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h from where the coordinate is `begin`."""
+
+    begin: float
+    c0: Vec3
+    c1: Vec3
+    c2: Vec3
+    c3: Vec3
+
+
+class PathPoint(Value):
+    """A place of a path with its derivatives by the coordinate."""
+
+    r: Vec3
+    slope: Vec3
+    bend: Vec3
+    twist: Vec3
 
 
 class Counter(Record):
@@ -492,6 +519,7 @@ class Scene(Struct):
     closures: list[Closure]
     counters: list[Counter]
     variables: list[Variable]
+    pieces: list[Piece]
     bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace
     freedoms_beside: list[Freedom]
     lents: list[Lent]

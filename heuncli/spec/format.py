@@ -45,6 +45,7 @@ from heuncli.spec.fields import (
     Moment,
     MomentInTime,
     Number,
+    PathPart,
     PointOrName,
     Position,
     Pressure,
@@ -231,6 +232,14 @@ class PlaneJoint(AnyJoint):
     normal: Direction
 
 
+class CurveJoint(Bearing):
+    type: Literal["curve"]
+    x: PathPart = 0.0
+    y: PathPart = 0.0
+    z: PathPart = 0.0
+    initial: Sliding | None = None
+
+
 class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
@@ -239,7 +248,16 @@ class RodJoint(AnyJoint):
 
 
 JointEntry = (
-    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | WeldJoint | LineJoint | PlaneJoint | RodJoint
+    BallJoint
+    | PinJoint
+    | SlideJoint
+    | CylinderJoint
+    | UniversalJoint
+    | WeldJoint
+    | LineJoint
+    | PlaneJoint
+    | RodJoint
+    | CurveJoint
 )
 JOINTS: dict[str, type[JointEntry]] = {
     "ball": BallJoint,
@@ -251,6 +269,7 @@ JOINTS: dict[str, type[JointEntry]] = {
     "line": LineJoint,
     "plane": PlaneJoint,
     "rod": RodJoint,
+    "curve": CurveJoint,
 }
 
 

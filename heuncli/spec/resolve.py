@@ -6,7 +6,7 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
@@ -19,6 +19,9 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
+
+if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
 
 DEFAULT_TOLERANCE = 1e-9
 
@@ -187,7 +190,14 @@ class Resolver:
             bearing=area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
+            path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
         )
+
+    def path(self, joint: f.CurveJoint) -> Path:
+        """What the point of a curve runs along."""
+        from heuncli.expressions.paths import path_of  # with NumPy, which a spec without one has no need of
+
+        return path_of((joint.x, joint.y, joint.z))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)

@@ -18,6 +18,7 @@ from heuncli.mechanism.model import (
     Mechanism,
     Stop,
 )
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
@@ -35,6 +36,7 @@ from heuncli.tree.rows import (
     CounterRow,
     FreedomRow,
     GroupRow,
+    PieceRow,
     Program,
     Vector,
     table_of,
@@ -100,7 +102,7 @@ def framed(
 
 def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
     """The joints that are not to be cut."""
-    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named}
+    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named or j.path is not None}
     kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
@@ -132,6 +134,7 @@ class _Builder:
         self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
         self.body_rows: list[BodyRow] = []
         self.freedom_rows: list[FreedomRow] = []
+        self.pieces: list[PieceRow] = []
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
@@ -207,11 +210,23 @@ class _Builder:
                 own.append(1.0 / self.size if kind == kernel.SHIFT else 1.0)
             answer = self.answer_count + 3 * ball + k
             driven, program = int(program is not None), program or NO_PROGRAM
-            self.freedom_rows.append(FreedomRow(kind, *places, driven, answer, i, program, direction))
+            row = FreedomRow(kind, *places, driven, answer, i, program, direction)
+            self.freedom_rows.append(self._on_path(h, quantity, row))
             self.freedoms.append(Freedom(h.joint, quantity, *places))
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + own + weights + own
         return GroupRow(begin, rates_at, len(self.y))
+
+    def _on_path(self, h: Hang, quantity: str, row: FreedomRow) -> FreedomRow:
+        """The freedom of a point that runs along a path, whose pieces join the table; any other as it is."""
+        path = self.mechanism.joints[h.joint].path if h.joint >= 0 else None
+        if path is None or quantity != "travel":
+            return row
+        begin = len(self.pieces)
+        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
+        reach, slope, bend = path.greatest
+        return replace(row, path=begin, pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
+                       bend=bend)  # fmt: skip
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
@@ -383,6 +398,7 @@ class _Builder:
             "bodies": table_of(kernel.Body, self.body_rows),
             "freedoms": table_of(kernel.Freedom, self.freedom_rows),
             "closures": table_of(kernel.Closure, self.closure_rows, places),
+            "pieces": table_of(kernel.Piece, self.pieces),
             "counters": table_of(kernel.Counter, self._counter_rows()),
             "contacts": table_of(kernel.Contact, self.one_sided),
             "groups": table_of(kernel.Group, self.groups),

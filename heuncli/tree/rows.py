@@ -55,6 +55,23 @@ class FreedomRow:
     body: int
     program: Program
     direction: Array
+    path: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    reach: float = 0.0
+    slope: float = 0.0
+    bend: float = 0.0
+
+
+@record
+class PieceRow:
+    """A piece of a path."""
+
+    begin: float
+    c0: Array
+    c1: Array
+    c2: Array
+    c3: Array
 
 
 @record
@@ -192,6 +209,7 @@ Row = (
     | ClosurePlaces
     | ContactRow
     | CounterRow
+    | PieceRow
     | VariableRow
     | WatchRow
     | GroupRow
