@@ -24,6 +24,7 @@ from heuncli.tree.tables import (
     COLUMN_FREEDOM,
     FREEDOM_ANSWER,
     LOAD_ANSWER,
+    PART_ANSWER,
     STATE_ANSWER,
     Table,
     parts,
@@ -76,6 +77,7 @@ def answer_kinds(layout: Layout) -> dict[str, tuple[Any, int]]:
         "freedoms": (FREEDOM_ANSWER, len(layout.freedoms)),
         "loads": (LOAD_ANSWER, len(layout.tables["loads"])),
         "rows": (CLOSURE_ANSWER, len(layout.rows)),
+        "parts": (PART_ANSWER, len(layout.tables["parts"])),
         "whole": (STATE_ANSWER, 1),
     }
 

@@ -32,6 +32,7 @@ class Recovered:
     freedoms: Table
     loads: Table
     rows: Table
+    parts: Table  # of the rows that are sums
     gap: Array
     idle: Array
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
@@ -125,7 +126,7 @@ class Evaluator:
             residual = np.where(still, 0.0, residual)
         return Recovered(
             times=at, states=settled, bodies=told["bodies"], freedoms=told["freedoms"], loads=told["loads"], rows=rows,
-            gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
+            parts=told["parts"], gap=whole["gap"][:, 0], idle=whole["idle"][:, 0], pivot=whole["pivot"][:, 0],
             residual=residual, may_stay=self.may_stay(whole["gap"][:, 0]),
             holding=closed,
             causes=columns_of(columns.reshape(n_t, n_c, -1), len(layout.place), len(layout.freedoms))

@@ -8,7 +8,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3
+    from heuncli.kernel.algebra import Mat3, Vec3, scaled
     from heuncli.kernel.chosen import choose_afresh
     from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
     from heuncli.kernel.columns import answer_causes, measure_answers, put, unmet
@@ -92,6 +92,12 @@ def put_answers(
     at = j * to.row_width
     for i in range(scene.closure_count):
         at = put_row(scene, to.rows, at, cython.address(scene.closures[i]))
+    at = j * to.part_width
+    for i in range(scene.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        at = put(to.parts, at, scaled(part.factor, part.f))
+        at = put(to.parts, at, scaled(part.factor, part.m))
+        at = put(to.parts, at, part.Q)
     at = j * to.whole_width
     to.whole[at] = scene.gap
     to.whole[at + 1] = idle

@@ -35,7 +35,7 @@ if not cython.compiled:
         sub,
         transform,
     )
-    from heuncli.kernel.closures import place_of
+    from heuncli.kernel.carried_points import place_of
     from heuncli.kernel.columns import apply_none, prescribe, stand_still
     from heuncli.kernel.course import set_time
     from heuncli.kernel.dense import clipped, interpolate, need_interpolant

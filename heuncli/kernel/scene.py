@@ -17,7 +17,7 @@ from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-GUIDE, DOT, ROD, TURN = range(4)
+GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -144,7 +144,10 @@ class Closure(Record):
     """A closure row J V = 0: multiplier 1 puts the force f at the point Q and the couple m on b, the opposite on a.
 
     GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length.
-    TURN: a pin's angle = length, about e fixed in a.
+    TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
+    by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
+    MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
+    coordinates of two freedoms.
     """
 
     kind: int
@@ -167,6 +170,13 @@ class Closure(Record):
     q: Vec3  # point of b
     length: float
     weight: float  # of the gap [m per unit]
+    part: int  # of a SUM: the first of its parts
+    part_count: int
+    factor: float  # of a part
+    c: int  # of a MESH: the body that carries its place and directions; -1: the ground
+    ratio: float  # of the freedom's coordinate
+    freedom_b: int
+    ratio_b: float
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -454,6 +464,7 @@ class Instants(Value):
     freedom_width: Size
     load_width: Size
     row_width: Size
+    part_width: Size
     whole_width: Size
     column_width: Size
     afresh: bool  # the closure rows are chosen anew at each
@@ -468,6 +479,7 @@ class Instants(Value):
     freedoms: list[float]
     loads: list[float]
     rows: list[float]
+    parts: list[float]
     whole: list[float]  # of the state itself
     columns: list[float]  # of the causes
     y: list[float]  # the state under way
@@ -481,6 +493,7 @@ class Scene(Struct):
     freedom_count: int
     load_count: int
     closure_count: int
+    part_count: int
     counter_count: int
     variable_count: int
     point_count: int  # variables that are of points
@@ -517,6 +530,7 @@ class Scene(Struct):
     freedoms: list[Freedom]
     loads: list[Load]
     closures: list[Closure]
+    parts: list[Closure]  # of those that are sums
     counters: list[Counter]
     variables: list[Variable]
     pieces: list[Piece]

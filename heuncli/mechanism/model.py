@@ -15,6 +15,7 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import Coupling
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import models
@@ -191,6 +192,12 @@ class Mechanism:
     stops: tuple[Stop, ...] = ()
     conditions: tuple[Condition, ...] = ()
     points: Mapping[str, NamedPoint] = MappingProxyType({})
+    couplings: tuple[Coupling, ...] = ()
+
+    def owner(self, k: int) -> str:
+        """What a closure row belongs to, as a path: the joint of a number, or after these the coupling."""
+        joints = len(self.joints)
+        return f"joints.{self.joints[k].name}" if k < joints else f"couplings.{self.couplings[k - joints].name}"
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""

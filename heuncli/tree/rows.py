@@ -113,14 +113,21 @@ class ClosureRow:
     kind: int
     a: int
     b: int
-    p: Array
-    q: Array
+    p: Vector
+    q: Vector
     weight: float
     freedom: int = 0
     program: Program = NO_PROGRAM
     e: Vector = ZERO
     g: Vector = ZERO
     length: float = 0.0
+    part: int = 0
+    part_count: int = 0
+    factor: float = 0.0
+    c: int = 0
+    ratio: float = 0.0
+    freedom_b: int = 0
+    ratio_b: float = 0.0
 
 
 @record
