@@ -230,6 +230,7 @@ INERTIA_REFUSED = 1e-3  # of the largest moment: bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
 AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 LEAST_STRENGTH = 1e6  # [Pa] below what bars are made of (foams aside): a strength in MPa was written without its unit
+ALONG_AXIS = 1e-9  # sine or cosine: axes in typed digits that are meant to be parallel, or square
 STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
 EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md, "Expect")

@@ -8,6 +8,7 @@ MODULES = (
     "intervals",
     "enclosure",
     "paths",
+    "cams",
     "plane",
     "plane_rows",
     "tree",

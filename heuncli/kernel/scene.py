@@ -17,7 +17,7 @@ from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
+GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -147,7 +147,7 @@ class Closure(Record):
     TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
-    coordinates of two freedoms.
+    coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
     """
 
     kind: int
@@ -177,6 +177,14 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    pieces: int
+    period: float
+    swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    radius: float  # of the roller; 0: a point
+    pivot: Vec3
+    h: Vec3
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -446,6 +454,24 @@ class RowTangent(Value):
     m: Vec3
     rate: float
     acceleration: float
+
+
+class Cam(Value):
+    """A cam and its follower in the world; or what these change by."""
+
+    e: Vec3  # the disc's axis
+    g: Vec3  # the follower's axis or guide
+    C: Vec3  # the follower's point, from the disc's axis on
+    w: Vec3  # its velocity against the carrier, by a unit of the follower's rate
+    h: Vec3  # the normal of its face
+    slope: float  # L'
+
+
+class CamContact(Value):
+    """Where a cam touches, from the follower's point on, and the direction of its load there, of any length."""
+
+    beside: Vec3
+    n: Vec3
 
 
 class MotionTangent(Value):

@@ -4,9 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, Part
+import numpy as np
+
+from heuncli.expressions.paths import path_of
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, Part
 from heuncli.mechanism.model import Joint
 from heuncli.records import replace
+from heuncli.results import Array
 from heuncli.spec import couplings as c
 from heuncli.spec.models import Spec
 
@@ -34,4 +39,27 @@ def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float)
     return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
 
 
-MADE = {"ratio": ratio}
+def cam(given: c.Cam, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[CoupledRow, ...]:
+    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
+    k, n = number[given.shaft], number[given.follower]
+    shaft, follower = joints[k], joints[n]
+    swings = JOINTS[follower.kind].coordinates[0] == "angle"
+    shape = CamShape(
+        path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,
+        None if given.normal is None else unit(given.normal),
+    )  # fmt: skip
+    coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
+    part = Part(
+        "cam", shaft.b, follower.b, shaft.p, np.array(given.at), shaft.axis, follower.axis,
+        1.0 if given.both else -1.0, shaft.a, coordinates, shape,
+    )  # fmt: skip
+    return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
+
+
+def unit(vector: tuple[float, float, float]) -> Array:
+    """The direction of a vector that is not zero."""
+    v = np.array(vector)
+    return v / np.sqrt(v @ v)
+
+
+MADE = {"ratio": ratio, "cam": cam}

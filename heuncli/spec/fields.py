@@ -159,7 +159,7 @@ class Smooth(ReadValue):
     One with a corner would ask for infinite accelerations where it is passed, and one that bends by jumps for jumps.
     """
 
-    def __init__(self, dimension: u.Dimension, over: u.Dimension, constant: bool) -> None:
+    def __init__(self, dimension: u.Dimension | None, over: u.Dimension, constant: bool) -> None:
         super().__init__(dimension)
         self.over, self.constant = over, constant
 
@@ -182,7 +182,7 @@ class Smooth(ReadValue):
         if table.kind == HELD:
             raise Finding("table-curve", f"the table {table.name} has a corner at its ends", "leave outside: hold out")
         for given, asked, axis in zip(table.dimensions, (self.over, self.dimension), ("x", "y"), strict=True):
-            if given is not None and given != asked:
+            if given is not None and asked is not None and given != asked:
                 message = f"the {axis} of table {table.name} is {u.describe(given)}, expected {u.describe(asked)}"
                 raise Finding("dimension", message, f"{axis}_unit: {u.si_unit(asked)}, say")
         return table
@@ -251,6 +251,7 @@ Switch = Annotated[bool, YesOrNo()]
 FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]
 
+Lift = Annotated[Any, Smooth(None, u.ANGLE, constant=False)]
 PathPart = Annotated[Any, Smooth(u.LENGTH, u.LENGTH, constant=True)]
 
 Position = tuple[Length, Length, Length]

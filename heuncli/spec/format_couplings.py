@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from heuncli.spec.entries import Entry
-from heuncli.spec.fields import Number
+from heuncli.spec.fields import AnEnd, Direction, Length, Lift, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -16,5 +16,19 @@ class RatioEntry(Entry):
     factors: list[Number]
 
 
-CouplingEntry = RatioEntry
-COUPLINGS: dict[str, type[CouplingEntry]] = {"ratio": RatioEntry}
+class CamEntry(Entry):
+    """A disc that moves a follower."""
+
+    type: Literal["cam"]
+    of: list[str]
+    lift: Lift
+    at: AnEnd
+    contact: Literal["roller", "flat", "point"]
+    radius: Length | None = None
+    normal: Direction | None = None
+    two_sided: Switch = False
+    restitution: Number | None = None
+
+
+CouplingEntry = RatioEntry | CamEntry
+COUPLINGS: dict[str, type[CouplingEntry]] = {"ratio": RatioEntry, "cam": CamEntry}

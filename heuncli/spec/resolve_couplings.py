@@ -40,4 +40,13 @@ def ratio(by: Resolver, name: str, entry: f.RatioEntry) -> c.Ratio:
     return c.Ratio(tuple(c.Term(joint, kind.coordinates[0], factor) for joint, kind, factor in rows))
 
 
-MEANINGS = {"ratio": ratio}
+def cam(by: Resolver, name: str, entry: f.CamEntry) -> c.Cam:
+    """A disc and its follower."""
+    shaft, follower = entry.of
+    return c.Cam(
+        shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        entry.two_sided, entry.restitution,
+    )  # fmt: skip
+
+
+MEANINGS = {"ratio": ratio, "cam": cam}

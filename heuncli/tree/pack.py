@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.paths import Path
 from heuncli.expressions.programs import Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
@@ -22,7 +23,7 @@ from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
-from heuncli.tree.coupled_rows import ends, part_row, sum_row
+from heuncli.tree.coupled_rows import ends, part_row, sum_row, with_lift
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
@@ -225,11 +226,15 @@ class _Builder:
         path = self.mechanism.joints[h.joint].path if h.joint >= 0 else None
         if path is None or quantity != "travel":
             return row
-        begin = len(self.pieces)
-        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
         reach, slope, bend = path.greatest
-        return replace(row, path=begin, pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
+        return replace(row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
                        bend=bend)  # fmt: skip
+
+    def _put_path(self, path: Path) -> int:
+        """Add the pieces of a path; which of all is the first."""
+        first = len(self.pieces)
+        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
+        return first
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
@@ -342,7 +347,11 @@ class _Builder:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
                 self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
-                self.part_rows += [part_row(part, self.in_tree, self.relative, freedoms) for part in row.parts]
+                for part in row.parts:
+                    made = part_row(part, self.in_tree, self.relative, freedoms)
+                    self.part_rows.append(with_lift(made, part, len(self.pieces), self.relative))
+                    if part.cam is not None:
+                        self._put_path(part.cam.lift)
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
 

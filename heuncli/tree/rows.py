@@ -128,6 +128,14 @@ class ClosureRow:
     ratio: float = 0.0
     freedom_b: int = 0
     ratio_b: float = 0.0
+    lift: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    swings: int = 0
+    faced: int = 0
+    radius: float = 0.0
+    pivot: Vector = ZERO
+    h: Vector = ZERO
 
 
 @record

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec.format_couplings import RatioEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 
@@ -31,6 +32,8 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
 def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
     """A linear relation has a factor for each joint, none of them zero, and two joints at least."""
     for name, coupling in draft.document.couplings.items():
+        if not isinstance(coupling, RatioEntry):
+            continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
             message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
             yield Violation(("couplings", name, "factors"), message, "two joints at least, and a factor for each")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.spec.rules import (
     analysis,
     bodies,
+    cams,
     conditions,
     couplings,
     curves,
@@ -23,7 +24,7 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, couplings, sections, analysis, methods,
+    naming, references, bodies, products, joints, plane, loads, stops, couplings, cams, sections, analysis, methods,
     conditions, expect, curves, not_yet,
 )  # fmt: skip
 
