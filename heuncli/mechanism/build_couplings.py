@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli.expressions.paths import path_of
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, Part
+from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.model import Joint
 from heuncli.records import replace
 from heuncli.results import Array
@@ -32,10 +32,10 @@ def ratio(given: c.Ratio, joints: Sequence[Joint], number: Mapping[str, int]) ->
     return (CoupledRow(parts, given.is_, SIZE if turning else 1.0),)
 
 
-def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float) -> Part:
+def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float) -> CouplingPart:
     """The condition on a joint's coordinate: of an angle its couple, of a travel its force."""
     joint = joints[k]
-    found = Part("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
+    found = CouplingPart("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
     return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
 
 
@@ -49,7 +49,7 @@ def cam(given: c.Cam, joints: Sequence[Joint], number: Mapping[str, int]) -> tup
         None if given.normal is None else unit(given.normal),
     )  # fmt: skip
     coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
-    part = Part(
+    part = CouplingPart(
         "cam", shaft.b, follower.b, shaft.p, np.array(given.at), shaft.axis, follower.axis,
         1.0 if given.both else -1.0, shaft.a, coordinates, shape,
     )  # fmt: skip

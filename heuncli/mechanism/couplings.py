@@ -44,7 +44,7 @@ class CamShape:
 
 
 @record
-class Part:
+class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates: those
@@ -93,7 +93,7 @@ class CoupledRow:
     restitution it opens and closes, without the run ends where it would push.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[CouplingPart, ...]
     length: float | None = None
     weight: float = 1.0
     tension_only: bool = False
