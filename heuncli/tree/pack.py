@@ -23,7 +23,7 @@ from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
-from heuncli.tree.coupled_rows import ends, part_row, sum_row, with_lift
+from heuncli.tree.coupled_rows import as_assembled, ends, part_row, sum_row, with_lift
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
@@ -138,6 +138,7 @@ class _Builder:
         self.body_rows: list[BodyRow] = []
         self.freedom_rows: list[FreedomRow] = []
         self.pieces: list[PieceRow] = []
+        self.coordinates: dict[tuple[int, str], float] = {}  # at the start, of the tree's joints
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
@@ -217,6 +218,7 @@ class _Builder:
             row = FreedomRow(kind, *places, driven, answer, i, program, direction)
             self.freedom_rows.append(self._on_path(h, quantity, row))
             self.freedoms.append(Freedom(h.joint, quantity, *places))
+            self.coordinates[h.joint, quantity] = x
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + own + weights + own
         return GroupRow(begin, rates_at, len(self.y))
@@ -346,7 +348,8 @@ class _Builder:
                 if row.tension_only:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
-                self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
+                length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
+                self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
                 for part in row.parts:
                     made = part_row(part, self.in_tree, self.relative, freedoms)
                     self.part_rows.append(with_lift(made, part, len(self.pieces), self.relative))
