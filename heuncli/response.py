@@ -39,7 +39,7 @@ def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Work
     The rank of the closures is judged at the start, where contacts that close later stand open: without them.
     """
     made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers_of(layout))
-    made.hold([0.0] * len(layout.contacts))
+    made.hold(layout.all_open.tolist())
     made.start(0.0, layout.y0)
     if holding is not None:
         made.hold(holding.tolist())

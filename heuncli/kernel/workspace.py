@@ -48,7 +48,8 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         self.expressions: Expressions = expressions
         self.memory: Memory = Memory()
-        self.opening: cython.int = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
+        told: Any = [*tables["contacts"]["opens"].tolist(), *tables["contacts"]["held_at"].tolist()]
+        self.opening: cython.int = sum(1 for k in told if k)
         scene.programs = cython.address(expressions.programs)
         scene.held_count = expressions.held
         take_numbers(scene, tables, numbers)
@@ -65,7 +66,7 @@ class Workspace:
             judge_start(cython.address(self.scene), t, memory.doubles(state))
 
     def hold(self, holding: Any) -> None:
-        """Open and close the contacts, until the next call: of each 0 open, 1 closed, 2 closed by others."""
+        """Open and close the contacts, until the next call: of each a number, then of each latch one (take_holding)."""
         memory: Memory = Memory()
         if self.opening:
             take_holding(cython.address(self.scene), memory.doubles(holding), 0)

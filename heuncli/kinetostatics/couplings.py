@@ -66,9 +66,14 @@ class CouplingLoads:
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
 
+    @property
+    def carries(self) -> str:
+        """What its load is called: a moment, where it loads by couples alone."""
+        return "moment" if self.coupling.rows[0].is_couple else "force"
+
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
-        """What it would exert with other multipliers of all rows, (n_t, rows)."""
-        own = tuple(multipliers[:, r] for r in self.rows)
+        """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
+        own = tuple(multipliers[..., r] for r in self.rows)
         places = iter(self.parts)
         parts = tuple(
             next(places).of_multiplier(multiplier)
@@ -76,6 +81,15 @@ class CouplingLoads:
             for _ in row.parts
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
+
+    def plus(self, more: Array | None) -> CouplingLoads:
+        """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
+        if more is None:
+            return self
+        whole = np.zeros_like(more)
+        for r, multiplier in zip(self.rows, self.multipliers, strict=True):
+            whole[..., r] = multiplier + more[..., r]
+        return self.of_multipliers(whole)
 
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
@@ -128,5 +142,4 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
         for body, (place, force, moment) in loads.on_bodies().items()
     }
-    carried = "moment" if loads.coupling.rows[0].is_couple else "force"
-    return {carried: loads.multipliers[0], "on": on, "open": []}
+    return {loads.carries: loads.multipliers[0], "on": on, "open": []}

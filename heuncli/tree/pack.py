@@ -339,6 +339,7 @@ class _Builder:
             for limit, sense in ((stop.low, -1), (stop.high, 1)):
                 if limit is not None:
                     self._limit(stop, limit, sense)
+        self._latches()
 
     def coupled_rows(self) -> None:
         """The rows of the couplings, which come after those of the cut joints."""
@@ -371,11 +372,19 @@ class _Builder:
         opens = len(self.contacts) if restitution is not None else 0
         self.one_sided.append(ContactRow(row, 1, opens))
 
-    def _limit(self, stop: Stop, limit: float, sense: int) -> None:
-        """The row of one limit of a stop."""
+    def _latches(self) -> None:
+        """The rows of all latches."""
+        latches = [stop for stop in self.mechanism.stops if stop.latch is not None]
+        count = len(self.contacts) + len(latches)
+        for k, stop in enumerate(latches):
+            assert stop.latch is not None
+            self._limit(stop, stop.latch.at or 0.0, 0, held_at=count + k + 1)
+
+    def _limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
+        """The row of one limit of a stop, or of a latch."""
         joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts)))
+        self.one_sided.append(ContactRow(row, sense, len(self.contacts), held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
         elif stop.quantity == "travel":

@@ -11,6 +11,7 @@ from heuncli.spec.rules import (
     curves,
     expect,
     joints,
+    latches,
     loads,
     methods,
     naming,
@@ -24,8 +25,8 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, couplings, cams, sections, analysis, methods,
-    conditions, expect, curves, not_yet,
+    naming, references, bodies, products, joints, plane, loads, stops, latches, couplings, cams, sections, analysis,
+    methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

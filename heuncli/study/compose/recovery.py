@@ -130,7 +130,8 @@ class Recovery:
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
         """What couplings exert."""
-        return coupling_loads(self.setup.scene.layout, self.recovered)
+        more = self.decided.more if self.decided is not None else None
+        return [own.plus(more) for own in coupling_loads(self.setup.scene.layout, self.recovered)]
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
@@ -159,7 +160,8 @@ class Recovery:
         found = shares_of(layout, self.recovered, self.states, self.applied, members)
         if self.decided is None:
             return found
-        return replace(found, joints=self.decided.chosen(found.joints, self.states))
+        joints, more = self.decided.chosen(found.joints, self.states)
+        return replace(found, joints=joints, couplings=[own.plus(more) for own in found.couplings])
 
     @property
     def applied(self) -> list[Action]:
@@ -205,7 +207,8 @@ class Recovery:
 
         Those of the start, and one more for each contact that has closed since.
         """
-        closed = (self.recovered.holding > 0.0) & ~(self.setup.runner.start_holding > 0.0)
+        own = slice(len(self.setup.scene.layout.contacts))
+        closed = (self.recovered.holding[:, own] > 0.0) & ~(self.setup.runner.start_holding[own] > 0.0)
         return np.asarray(self.setup.model["redundant"] + closed.sum(axis=1))
 
     @property
@@ -236,4 +239,4 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     """Sums of indeterminate components that are determined."""
     if recovery.decided is None:
         return []
-    return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
+    return recovery.decided.sums(recovery.setup.runner, recovery.recovered, recovery.couplings)
