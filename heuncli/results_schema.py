@@ -186,13 +186,16 @@ ROWS: tuple[Quantity, ...] = (
         scalar("tension", "N")),
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
-    *at("couplings.COUPLING", "the load that the coupling carries", scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its flank, "
+        "above zero where it presses", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
+    *at("couplings.COUPLING", "of a cam, the angle between that normal and the way of the follower",
+        scalar("pressure_angle", "rad")),
     *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
         scalar("tension", "N"), scalar("last_tension", "N")),
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),
-    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m")),
+    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
@@ -220,6 +223,10 @@ ROWS: tuple[Quantity, ...] = (
         scalar("value", "N | N·m")),
     *at("forces.FORCE", "distance of its two points", scalar("length", "m")),
     *at("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
+        vector("shift", "m"), vector("turn", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
     *at("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
     *at("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
@@ -404,7 +411,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "angle", "rate") else "forces"
+        return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
     if number.startswith("energy_"):
         return "energy"
     return ESTIMATES.get(kind, "motion")

@@ -27,26 +27,15 @@ if not cython.compiled:
         scaled,
         sub,
     )
+    from heuncli.kernel.cams import cam_part
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.jets import jet
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import (
-        ARC,
-        DOT,
-        GUIDE,
-        MESH,
-        ROD,
-        STRAND,
-        SUM,
-        TURN,
-        Body,
-        Carried,
-        Closure,
-        Counter,
-        Scene,
-    )
+        ARC, CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Body, Carried, Closure, Counter, Scene,
+    )  # fmt: skip
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
@@ -94,7 +83,9 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
-    if row.kind == GUIDE:
+    if row.kind == CAM:
+        cam_part(scene, row)
+    elif row.kind == GUIDE:
         guide_row(scene, row)
     elif row.kind == DOT:
         dot_row(scene, row)

@@ -20,6 +20,9 @@ from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
+LOADS = {"cam": "contact", "rope": "tension"}  # what couplings of a type tell
+
+
 @record
 class PartLoad:
     """Force and moment of one part ON its body b, about the place there, the opposite ON a, about its place on a.
@@ -81,9 +84,9 @@ class CouplingLoads:
 
     @property
     def carries(self) -> str:
-        """What its load is called: a moment, where it loads by couples alone; of a rope its tension."""
-        if self.coupling.given.type == "rope":
-            return "tension"
+        """What its load is called: a moment, where it loads by couples alone; of a cam or rope as in LOADS."""
+        if self.coupling.given.type in LOADS:
+            return LOADS[self.coupling.given.type]
         return "moment" if self.coupling.rows[0].is_couple else "force"
 
     @property
@@ -92,12 +95,19 @@ class CouplingLoads:
         return -1.0 if self.carries == "tension" else 1.0
 
     @property
-    def carried(self) -> dict[str, Array]:
-        """That load by its name; of a rope that sheaves hold the tension before the first of them, and the last one."""
-        if self.coupling.given.type != "rope":
-            return {self.carries: self.multipliers[0]}
-        found = {"tension": -self.multipliers[0]}
-        return found | ({"last_tension": -self.multipliers[-1]} if len(self.multipliers) > 1 else {})
+    def carried(self) -> Array:
+        """That load, (..., n_t): the multiplier of the first row; of a cam above zero where it presses, a rope, pulls."""
+        if self.carries != "contact":
+            return self.sign * self.multipliers[0]
+        (load,) = self.parts
+        size: Array = load.part.factor * np.sqrt(np.sum(load.f * load.f, axis=-1))
+        return size * self.multipliers[0]
+
+    @property
+    def told(self) -> list[tuple[str, int]]:
+        """What is told of it, with the row: its load; of a rope that sheaves hold the last tension, too."""
+        held = self.carries == "tension" and len(self.rows) > 1
+        return [(self.carries, self.rows[0]), *([("last_tension", self.rows[-1])] if held else [])]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
@@ -170,4 +180,5 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
         for body, (place, force, moment) in loads.on_bodies().items()
     }
-    return {**loads.carried, "on": on, "open": []}
+    last = {name: -loads.multipliers[-1] for name, _ in loads.told[1:]}
+    return {loads.carries: loads.carried} | last | {"on": on, "open": []}

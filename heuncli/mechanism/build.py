@@ -14,7 +14,9 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Directed,
+    Elastic,
     Joint,
     JointLoad,
     Load,
@@ -63,10 +65,13 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
+    conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
     if planar:
-        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
+        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
+            loads, values, joints
+        )
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
@@ -75,7 +80,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     if spec.couplings:
         from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
+        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -84,9 +89,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(
-            Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
-        ),
+        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
         conditions=conditions,
         points=points,
         couplings=couplings,
@@ -142,7 +145,7 @@ def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
 
 def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
-    axis = unit(j.axis)
+    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
         a=a, p=np.array(j.p), b=b, q=np.array(j.q),
@@ -150,7 +153,7 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
-        p_name=j.p_name, q_name=j.q_name,
+        p_name=j.p_name, q_name=j.q_name, path=j.path,
     )  # fmt: skip
 
 
@@ -159,7 +162,7 @@ def coupled(spec: m.Spec) -> set[str]:
     ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
     gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
     found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
-    return found | {term.joint for coupling in spec.couplings.values() for term in coupling.terms}
+    return found | {term.joint for coupling in spec.couplings.values() for term in getattr(coupling, "terms", ())}
 
 
 def coordinates_used(
@@ -213,16 +216,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (None, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
-        case m.Torque():
+        case m.Bushing():
+            return bushing(name, f, index)
+        case m.Torque() | m.Motor():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
+            if f.torque is not None:
+                return JointLoad(name, "torque", k, f.torque)
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
         case m.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
+            if f.law is not None:
+                return JointLoad(name, "torque", k, f.law)
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
@@ -231,10 +242,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> Bushing:
+    """Six springs and dampers."""
+
+    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
+
+    a, b = f.from_, f.to
+    return Bushing(
+        name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
+        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+    )  # fmt: skip
+
+
 def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     """Friction of a given size, or by what of the joint's own load presses."""
     if f.coefficient is None:
-        return JointLoad(name, "friction", joint, None, f.torque or 0.0, f.force or 0.0, f.speed)
+        of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
+        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
     turning, speed = f.coefficient * (f.radius or 0.0), f.speed
     if f.radius is not None:
         return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")
@@ -248,3 +273,8 @@ def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     return Blow(
         b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
     )  # fmt: skip
+
+
+def stop(s: m.Stop[str], joint: int) -> Stop:
+    """A stop or a latch of a joint's coordinate."""
+    return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

@@ -100,9 +100,9 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
 def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> None:
     """Open components of a coupling's block, in place: of what it carries, and of what it exerts ON each body."""
     length, parts = stress.length if loads.carries == "moment" else 1.0, {}
-    for name, r in zip(loads.carried, (loads.rows[0], loads.rows[-1]), strict=False):
+    for name, r in loads.told:
         parts[name] = np.asarray(stress.reaches(stress.multipliers[:, r][:, None], length)[:, 0])
-        for own in (block, *block.get("shares", {}).values()):
+        for own in (block, *(own for own in block.get("shares", {}).values() if name in own)):
             own[name] = opened(own[name], parts[name])
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]

@@ -150,7 +150,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment", "tension", "last_tension"),
+    ("force", "moment", "contact", "pressure_angle", "tension", "last_tension"),
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
@@ -27,6 +28,71 @@ class Ratio(NamedTuple):
     terms: tuple[Term, ...]
     is_: float | None = None
     type: Literal["ratio"] = "ratio"
+
+
+class Gear(NamedTuple):
+    """Two gears, or a gear and a rack, by their joints: those of the terms, whose factors are 1.
+
+    ratio: of the first coordinate by the second; teeth: of both; None where not given. at: the pitch point.
+    """
+
+    terms: tuple[Term, ...]
+    ratio: float | None = None
+    teeth: tuple[float, float] | None = None
+    internal: bool = False
+    at: End | None = None
+    pressure_angle: float = 0.0
+    helix: float = 0.0
+    type: Literal["gear"] = "gear"
+
+
+class Screw(NamedTuple):
+    """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
+
+    lead: travel a turn [m], of a left-handed thread below zero.
+    """
+
+    terms: tuple[Term, ...]
+    lead: float
+    type: Literal["screw"] = "screw"
+
+
+class Belt(NamedTuple):
+    """A belt over two pulleys of some radii [m]; pretension [N]: of each strand at rest without load; crossed."""
+
+    terms: tuple[Term, ...]
+    radii: tuple[float, float]
+    crossed: bool = False
+    pretension: float = 0.0
+    type: Literal["belt"] = "belt"
+
+
+class Differential(NamedTuple):
+    """Two shafts and their carrier, the terms: first - carrier = ratio (second - carrier)."""
+
+    terms: tuple[Term, ...]
+    ratio: float = -1.0
+    type: Literal["differential"] = "differential"
+
+
+class Cam(NamedTuple):
+    """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
+
+    at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
+    normal. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
+    `both`, the follower is guided on both sides.
+    """
+
+    shaft: str
+    follower: str
+    lift: TableFunction
+    at: tuple[float, float, float]
+    contact: Literal["roller", "flat", "point"]
+    radius: float = 0.0
+    normal: tuple[float, float, float] | None = None
+    both: bool = False
+    restitution: float | None = None
+    type: Literal["cam"] = "cam"
 
 
 class Passage(NamedTuple):
@@ -66,4 +132,4 @@ class Rope(NamedTuple):
         return frozenset(x.end.body for x in self.through if x.grips)
 
 
-Coupling = Ratio | Rope
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Rope  # a union of the classes here

@@ -299,7 +299,8 @@ def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -
     _, R = pose_of(start, x.carrier)
     turns = () if x.turn is None else (x.turn._replace(ratio=-signed * x.turn.ratio),)
     return CouplingPart(
-        "wound", x.body, x.body, x.point, x.point, t @ R, x.normal @ R, 1.0, x.carrier, turns, signed, strand
+        "wound", x.body, x.body, x.point, x.point, t @ R, x.normal @ R, 1.0, x.carrier, turns,
+        radius=signed, strand=strand,
     )
 
 

@@ -47,12 +47,15 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     rows, bodies = at.rows[0], at.bodies[0]
     found = []
     for i, contact in enumerate(layout.contacts):
+        if contact.sense == 0:
+            continue  # a latch
         gap = -contact.sense * float(rows["gap"][contact.row])
         near = tolerances.CONTACT_TOUCHES * terms_of_gap(layout, bodies, contact)
         if closed[i] or contact.row == event or gap <= near:
             found.append(i)
     own = [layout.contacts[i] for i in found]
-    loads = np.array([unit_load(layout, at, contact) for contact in own]).reshape(len(own), len(bodies), 6)
+    loads = np.array([unit_load(layout, at, contact, -contact.sense) for contact in own])
+    loads = loads.reshape(len(own), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
     reaches = tolerances.KERNEL["touching"] * terms
@@ -94,8 +97,8 @@ def point(bodies: Table, row: Table) -> Array:
     return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
 
 
-def unit_load(layout: Layout, at: Recovered, contact: Contact) -> Array:
-    """What a contact that bears 1 puts on the bodies, (n_b, 6)."""
+def unit_load(layout: Layout, at: Recovered, contact: Contact, way: float) -> Array:
+    """What a contact whose multiplier is `way` puts on the bodies, (n_b, 6)."""
     bodies, own = at.bodies[0], layout.tables["closures"][contact.row]
     load = np.zeros((len(bodies), 6))
     for k, row in enumerate(conditions(layout, contact.row), int(own["part"])):
@@ -103,7 +106,7 @@ def unit_load(layout: Layout, at: Recovered, contact: Contact) -> Array:
             Q, f, m = (at.parts[of][0, k] for of in ("Q", "f", "m"))
         else:
             Q, f, m = point(bodies, row), at.rows["f"][0, contact.row], at.rows["m"][0, contact.row]
-        f, m = -contact.sense * f, -contact.sense * m
+        f, m = way * f, way * m
         for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
             if body >= 0:
                 load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
