@@ -162,7 +162,7 @@ def coupled(spec: m.Spec) -> set[str]:
     ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
     gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
     found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
-    return found | {term.joint for coupling in spec.couplings.values() for term in getattr(coupling, "terms", ())}
+    return found | {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(
