@@ -52,7 +52,7 @@ class CouplingPart:
     mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work, whatever moves, and
     stands in the axes of c, too. standing: of a mesh a force and a moment about p that are there besides, whatever the
     multiplier, and do no work either. radius, strand: of a rope's arc or what is wound of it, strand the place among
-    the row's parts of the one that arrives.
+    the row's parts of the one that arrives. other_axis: of a strand between two sheaves the axis of b, parallel to e.
     """
 
     kind: Literal["guide", "dot", "rod", "turn", "mesh", "cam", "strand", "arc", "wound"]
@@ -70,6 +70,7 @@ class CouplingPart:
     cam: CamShape | None = None
     radius: float = 0.0
     strand: int = 0
+    other_axis: Array | tuple[float, float, float] = NOWHERE
 
     @property
     def is_couple(self) -> bool:

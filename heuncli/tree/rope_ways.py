@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
+from heuncli.mechanism.couplings import NOWHERE, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -291,7 +291,10 @@ def strand_part(a: Stay, b: Stay, at_a: float, at_b: float) -> CouplingPart:
     if not a.radius:
         return CouplingPart("strand", b.body, a.body, b.point, a.point, b.axis, (-at_b, 0.0, -1.0))
     other = float(np.sign(a.normal @ b.normal)) if b.radius else 1.0
-    return CouplingPart("strand", a.body, b.body, a.point, b.point, a.axis, (at_a, other * at_b, 1.0))
+    axis_b = other * b.axis if b.radius else NOWHERE
+    return CouplingPart(
+        "strand", a.body, b.body, a.point, b.point, a.axis, (at_a, other * at_b, 1.0), other_axis=axis_b
+    )  # fmt: skip
 
 
 def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -> CouplingPart:
@@ -299,8 +302,18 @@ def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -
     _, R = pose_of(start, x.carrier)
     turns = () if x.turn is None else (x.turn._replace(ratio=-signed * x.turn.ratio),)
     return CouplingPart(
-        "wound", x.body, x.body, x.point, x.point, t @ R, x.normal @ R, 1.0, x.carrier, turns,
-        radius=signed, strand=strand,
+        "wound",
+        x.body,
+        x.body,
+        x.point,
+        x.point,
+        t @ R,
+        x.normal @ R,
+        1.0,
+        x.carrier,
+        turns,
+        radius=signed,
+        strand=strand,
     )
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from heuncli import tolerances
+from heuncli.integration.diagnosis.off_sheaves import slanting
 from heuncli.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
