@@ -14,7 +14,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
 
 BY_HAND = "a sheave on a bearing that turns with the rope, or a plain point in its place"
@@ -62,7 +62,7 @@ def slanting(layout: Layout, recovered: Recovered) -> list[str]:
     ]
 
 
-def rope_parts(layout: Layout, recovered: Recovered) -> Iterator[tuple[Coupling, CouplingPart, int, Array]]:
+def rope_parts(layout: Layout, recovered: Recovered) -> Iterator[tuple[Coupling, CouplingPart, int, Mask]]:
     """The parts of ropes: the coupling, the part, its place among the kernel's, and at which instants it is taut."""
     mechanism = layout.mechanism
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
@@ -76,7 +76,7 @@ def rope_parts(layout: Layout, recovered: Recovered) -> Iterator[tuple[Coupling,
                 yield coupling, part, k, taut
 
 
-def skewed(layout: Layout, recovered: Recovered, part: CouplingPart) -> Array:
+def skewed(layout: Layout, recovered: Recovered, part: CouplingPart) -> Mask:
     """Whether the axes of a strand's two sheaves have left each other, (n_t,)."""
     if not part.g[1]:
         return np.zeros(len(recovered.times), dtype=bool)

@@ -37,6 +37,7 @@ def warnings(
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
         *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, joints)),
         *singular,
+        *slanting(setup.scene.layout, recovery.recovered),
     )
 
 
