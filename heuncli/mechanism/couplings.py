@@ -33,8 +33,7 @@ class CouplingPart:
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
     its gap is counted by, of a turn one, of a mesh one or two. apart: of a mesh the force that pushes b out of a beside
-    it, for a multiplier of 1 or of -1: it does no work, whatever moves, and stands in the axes of c, too. standing: of a mesh a force and a moment about p
-    that are there besides, whatever the multiplier, and do no work either.
+    it, for a multiplier of 1 or of -1: it does no work, whatever moves, and stands in the axes of c, too.
     """
 
     kind: Literal["guide", "dot", "rod", "turn", "mesh"]
@@ -48,7 +47,6 @@ class CouplingPart:
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
     apart: Array | tuple[float, float, float] = NOWHERE
-    standing: tuple[Array | tuple[float, float, float], Array | tuple[float, float, float]] = (NOWHERE, NOWHERE)
 
     @property
     def is_couple(self) -> bool:
