@@ -7,7 +7,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli.errors import Finding, Problem, SpecError
-from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
+from heuncli.expressions.paths import path_of
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.gearing import gear_row
 from heuncli.mechanism.model import GROUND, Body, Joint
 from heuncli.mechanism.strands import belt_row
@@ -101,4 +103,27 @@ def of_coordinate(drawn: Drawing, term: c.Term, factor: float) -> CouplingPart:
     )  # fmt: skip
 
 
-MADE = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential}
+def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
+    k, n = drawn.number[given.shaft], drawn.number[given.follower]
+    shaft, follower = drawn.joints[k], drawn.joints[n]
+    swings = JOINTS[follower.kind].coordinates[0] == "angle"
+    shape = CamShape(
+        path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,
+        None if given.normal is None else unit(given.normal),
+    )  # fmt: skip
+    coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
+    part = CouplingPart(
+        "cam", shaft.b, follower.b, shaft.p, np.array(given.at), shaft.axis, follower.axis,
+        1.0 if given.both else -1.0, shaft.a, coordinates, shape,
+    )  # fmt: skip
+    return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
+
+
+def unit(vector: tuple[float, float, float]) -> Array:
+    """The direction of a vector that is not zero."""
+    v = np.array(vector)
+    return v / np.sqrt(v @ v)
+
+
+MADE = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}

@@ -6,7 +6,7 @@ import math
 from typing import Literal
 
 from heuncli.spec.entries import Entry, key
-from heuncli.spec.fields import AnEnd, Angle, Anything, Force, Length, Number, Switch
+from heuncli.spec.fields import AnEnd, Angle, Anything, Direction, Force, Length, Lift, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -57,7 +57,22 @@ class DifferentialEntry(Entry):
     ratio: Number = -1.0
 
 
-CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry
+class CamEntry(Entry):
+    """A disc that moves a follower."""
+
+    type: Literal["cam"]
+    of: list[str]
+    lift: Lift
+    at: AnEnd
+    contact: Literal["roller", "flat", "point"]
+    radius: Length | None = None
+    normal: Direction | None = None
+    two_sided: Switch = False
+    restitution: Number | None = None
+
+
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
+    "cam": CamEntry,
 }  # fmt: skip

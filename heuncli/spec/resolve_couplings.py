@@ -74,4 +74,13 @@ def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
     return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
 
 
-MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential}
+def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
+    """A disc and its follower."""
+    shaft, follower = entry.of
+    return c.Cam(
+        shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        entry.two_sided, entry.restitution,
+    )  # fmt: skip
+
+
+MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}
