@@ -11,8 +11,8 @@ from heuncli.expressions.paths import path_of
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.gearing import gear_row
-from heuncli.mechanism.model import GROUND, Body, Joint
-from heuncli.mechanism.strands import belt_row
+from heuncli.mechanism.model import GROUND, Body, Joint, PairLoad
+from heuncli.mechanism.strands import belt_row, pretension_of
 from heuncli.mechanism.threads import screw_row
 from heuncli.records import record
 from heuncli.results import Array
@@ -37,6 +37,18 @@ def couplings_of(
     if problems:
         raise SpecError(*problems)
     return tuple(found)
+
+
+def pretensions(
+    spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
+) -> tuple[PairLoad, ...]:
+    """What belts pull their pulleys together with, by the belts' names."""
+    drawn = Drawing(spec, joints, bodies, number)
+    belts = {name: own for name, own in spec.couplings.items() if own.type == "belt" and own.pretension > 0.0}
+    return tuple(
+        pretension_of(name, own, joints, bodies, (drawn.of(own.terms)[0], drawn.of(own.terms)[1]))
+        for name, own in belts.items()
+    )
 
 
 @record

@@ -105,6 +105,9 @@ def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> Non
     parts = {name: np.asarray(stress.reaches(row, length)[:, 0])}
     for own in (block, *block.get("shares", {}).values()):
         own[name] = opened(own[name], parts[name])
+    for beside in ("radial", "axial", "normal", "torque", "tight", "slack"):
+        if beside in block:
+            block[beside], parts[beside] = opened(block[beside], parts[name]), parts[name]
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]
     for i, (end, own) in enumerate(block["on"].items()):

@@ -150,7 +150,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment", "contact", "pressure_angle"),
+    ("force", "moment", "contact", "pressure_angle", "radial", "axial", "normal", "torque", "tight", "slack"),
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

@@ -48,6 +48,11 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         names = [body.name for body in mechanism.bodies]
         shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
         for own in recovery.couplings:
+            if own.coupling.given.type in ("gear", "screw", "belt"):
+                from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+
+                given = own.coupling.given
+                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 

@@ -103,8 +103,11 @@ class Recovery:
         from heuncli.redundancy.open_flanks import with_open_flanks
 
         couplings = self.couplings_of(found)
-        left = None if found.left is None else with_open_flanks(found.left, layout, found.joints, couplings)
-        return replace(found, joints=with_flanks(layout, found.joints, couplings), left=left)
+        left, stress = (
+            None if own is None else with_open_flanks(own, layout, found.joints, couplings)
+            for own in (found.left, found.stress)
+        )
+        return replace(found, joints=with_flanks(layout, found.joints, couplings), left=left, stress=stress)
 
     @property
     def verdicts(self) -> bool:
