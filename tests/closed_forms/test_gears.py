@@ -64,7 +64,9 @@ def test_order_of_the_gears_and_direction_of_the_joints_change_names_alone() -> 
     swapped = pair(teeth=[60, 20], of=["w", "p"], helix="-15 deg")
     swapped["joints"]["w"] = pin("wheel.c", "ground.B", (0, 0, -1))
     told = solved(swapped)
-    near(told.couplings["mesh"]["on"]["wheel"]["force"], plain.couplings["mesh"]["on"]["wheel"]["force"], 30.0, ROUNDING)
+    near(
+        told.couplings["mesh"]["on"]["wheel"]["force"], plain.couplings["mesh"]["on"]["wheel"]["force"], 30.0, ROUNDING
+    )
     near(told.foundation["supports"]["w"]["force"], plain.foundation["supports"]["w"]["force"], 30.0, ROUNDING)
     near(told.bodies["wheel"]["angular_velocity"], plain.bodies["wheel"]["angular_velocity"], 10, ROUNDING)
 
@@ -85,11 +87,18 @@ def test_rack_and_pinion() -> None:
     near(found.coordinates["p"]["rate"], -20, 20, ROUNDING)
     near(found.coordinates["r"]["acceleration"], -9.81 / 5, 9.81, ROUNDING)
     lift = 2 * 9.81 * 4 / 5
-    near(found.couplings["mesh"]["on"]["rack"]["force"][0], (lift * math.tan(math.radians(20)), 0, lift), lift, ROUNDING)
+    near(
+        found.couplings["mesh"]["on"]["rack"]["force"][0], (lift * math.tan(math.radians(20)), 0, lift), lift, ROUNDING
+    )
     near(found.couplings["mesh"]["on"]["rack"]["point"][0], (0.05, 0.03, 0), 0.05, ROUNDING)
     scene["couplings"]["mesh"] = {"type": "gear", "of": ["r", "p"], "ratio": -0.05}
     told = solved(scene)
-    near(told.couplings["mesh"]["on"]["rack"]["force"][0], found.couplings["mesh"]["on"]["rack"]["force"][0], lift, ROUNDING)
+    near(
+        told.couplings["mesh"]["on"]["rack"]["force"][0],
+        found.couplings["mesh"]["on"]["rack"]["force"][0],
+        lift,
+        ROUNDING,
+    )
 
 
 def test_bevel_gears() -> None:
@@ -98,7 +107,10 @@ def test_bevel_gears() -> None:
     scene["ground"]["points"] = {"A": [0.1, 0, 0], "B": [0, 0, 0.05]}
     pinion = {"mass": 1, "center": [0.1, 0, 0], "inertia": [0.02, 0.02, 0.02], "points": {"c": [0.1, 0, 0]}}
     scene["bodies"] = {"pinion": pinion, "wheel": wheel(0.2, (0, 0, 0.05), 2.0)}
-    scene["joints"] = {"p": pin("ground.A", "pinion.c", (1, 0, 0)), "w": pin("ground.B", "wheel.c", initial={"rate": 2})}
+    scene["joints"] = {
+        "p": pin("ground.A", "pinion.c", (1, 0, 0)),
+        "w": pin("ground.B", "wheel.c", initial={"rate": 2}),
+    }
     found = solved(scene)
     near(abs(found.coordinates["p"]["rate"]), 4, 4, ROUNDING)
     turned = 5 / (0.02 + 0.2 / 4)
