@@ -24,6 +24,7 @@ from heuncli.tree.tables import (
     COLUMN_FREEDOM,
     FREEDOM_ANSWER,
     LOAD_ANSWER,
+    PART_ANSWER,
     STATE_ANSWER,
     Table,
     parts,
@@ -38,7 +39,7 @@ def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Work
     The rank of the closures is judged at the start, where contacts that close later stand open: without them.
     """
     made = workspace.Workspace(layout.tables, layout.indices, layout.pack.expressions, numbers_of(layout))
-    made.hold([0.0] * len(layout.contacts))
+    made.hold(layout.all_open.tolist())
     made.start(0.0, layout.y0)
     if holding is not None:
         made.hold(holding.tolist())
@@ -76,6 +77,7 @@ def answer_kinds(layout: Layout) -> dict[str, tuple[Any, int]]:
         "freedoms": (FREEDOM_ANSWER, len(layout.freedoms)),
         "loads": (LOAD_ANSWER, len(layout.tables["loads"])),
         "rows": (CLOSURE_ANSWER, len(layout.rows)),
+        "parts": (PART_ANSWER, len(layout.tables["parts"])),
         "whole": (STATE_ANSWER, 1),
     }
 

@@ -8,7 +8,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3
+    from heuncli.kernel.algebra import Mat3, Vec3, scaled
     from heuncli.kernel.chosen import choose_afresh
     from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
     from heuncli.kernel.columns import answer_causes, measure_answers, put, unmet
@@ -46,6 +46,7 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     at = put(out, at, load.moment)
     at = put(out, at, load.at)
     at = put(out, at, load.from_at)
+    at = put(out, at, load.strain)
     out[at] = load.value
     out[at + 1] = load.span
     out[at + 2] = load.rate
@@ -92,6 +93,12 @@ def put_answers(
     at = j * to.row_width
     for i in range(scene.closure_count):
         at = put_row(scene, to.rows, at, cython.address(scene.closures[i]))
+    at = j * to.part_width
+    for i in range(scene.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        at = put(to.parts, at, scaled(part.factor, part.f))
+        at = put(to.parts, at, scaled(part.factor, part.m))
+        at = put(to.parts, at, part.Q)
     at = j * to.whole_width
     to.whole[at] = scene.gap
     to.whole[at + 1] = idle
@@ -137,7 +144,8 @@ def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.voi
 def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
     """Open and close the contacts by the numbers from `at`; whether that is a change.
 
-    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it.
+    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it, -1 where it is open, but a latch
+    holds it at its limit, so that it is not looked at. Behind them, of each latch, the length at which it holds.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -147,11 +155,15 @@ def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cyt
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.opens:
             k = at + contact.opens - 1
-            mode = APART
-            if holding[k] > 0.0:
-                mode = CARRIES if holding[k] < 1.5 else LEANS
+            mode = APART if holding[k] == 0.0 else LEANS
+            if holding[k] > 0.0 and holding[k] < 1.5:
+                mode = CARRIES
             changed = changed or scene.closures[contact.row].mode != mode
             scene.closures[contact.row].mode = mode
+            if contact.held_at:
+                k = at + contact.held_at - 1
+                changed = changed or scene.closures[contact.row].length != holding[k]
+                scene.closures[contact.row].length = holding[k]
     if changed:  # multipliers are found for the rows that carry; of the others they are 0
         for i in range(scene.closure_count):
             scene.closures[i].multiplier = 0.0

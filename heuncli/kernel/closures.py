@@ -20,38 +20,21 @@ if not cython.compiled:
         add,
         add_cross,
         add_scaled,
-        centripetal,
         cross,
         dot,
         norm,
-        rotate,
         rotate_back,
         scaled,
         sub,
     )
+    from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.jets import jet
+    from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import DOT, GUIDE, TURN, Body, Carried, Closure, Counter, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import answered, direction_of, push
-
-
-def carried(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Carried:
-    """How the body's point at the world place x moves; the ground's does not."""
-    if body < 0:
-        zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-        return Carried(zero, zero, zero)
-    on: cython.pointer[Body] = cython.address(scene.bodies[body])
-    arm: Vec3 = sub(x, on.r)
-    return Carried(add_cross(on.v, on.omega, arm), centripetal(on.omega, arm), on.omega)
-
-
-def place_of(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> Vec3:
-    """World place of a body's point, given from its joint point in its axes; a ground point as it is."""
-    if body < 0:
-        return q
-    return add(rotate(scene.bodies[body].R, q), scene.bodies[body].r)
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
@@ -69,25 +52,17 @@ def measure_moving_rows(scene: cython.pointer[Scene], t: cython.double) -> cytho
     r: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        if scene.flat and row.kind != TURN and (row.e.z != 0.0 or row.g.z != 0.0):
+        if scene.flat and row.kind != TURN and row.kind != SUM and (row.e.z != 0.0 or row.g.z != 0.0):
             continue
         measure_row(scene, row, t)
 
 
 def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: cython.double) -> cython.void:
     """Unit load (f, m at Q), gap, rate and gamma of one row, less what is prescribed of its length."""
-    if scene.flat and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
-        measure_in_plane(scene, row)
+    if row.kind == SUM:
+        measure_sum(scene, row)
     else:
-        row.Q = place_of(scene, row.b, row.q)
-        if row.kind == GUIDE:
-            guide_row(scene, row)
-        elif row.kind == DOT:
-            dot_row(scene, row)
-        elif row.kind == TURN:
-            turn_row(scene, row)
-        else:
-            rod_row(scene, row)
+        measure_condition(scene, row)
     row.prescribed_rate, row.prescribed_second = 0.0, 0.0  # a blow has left its jumps there
     if row.program.count:
         given: Jet = jet(scene.programs, row.program, t)
@@ -96,6 +71,41 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         row.gamma -= given.second
         row.prescribed_rate = given.rate
         row.prescribed_second = given.second
+
+
+def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """Unit load, gap, rate and gamma of a condition of two bodies."""
+    if scene.flat and row.kind != MESH and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+        measure_in_plane(scene, row)
+        return
+    row.Q = place_of(scene, row.b, row.q)
+    if row.kind == GUIDE:
+        guide_row(scene, row)
+    elif row.kind == DOT:
+        dot_row(scene, row)
+    elif row.kind == TURN:
+        turn_row(scene, row)
+    elif row.kind == ROD:
+        rod_row(scene, row)
+    else:
+        mesh_part(scene, row)
+
+
+def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """A row that is a sum of conditions: their gaps, rates and gammas, and the sums of their unit loads."""
+    i: cython.Py_ssize_t
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    row.f, row.m = zero, zero
+    row.gap, row.rate, row.gamma = -row.length, 0.0, 0.0
+    for i in range(row.part, row.part + row.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        measure_condition(scene, part)
+        row.gap += part.factor * part.gap
+        row.rate += part.factor * part.rate
+        row.gamma += part.factor * part.gamma
+        row.f = add_scaled(row.f, part.factor, part.f)
+        row.m = add_scaled(row.m, part.factor, part.m)
+    row.Q = scene.parts[row.part].Q
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -157,9 +167,20 @@ def rod_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
 
 def demanded(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
+    i: cython.Py_ssize_t
+    if row.kind != SUM:
+        return row.gamma + zero_acceleration(scene, row)
+    found: cython.double = row.gamma
+    for i in range(row.part, row.part + row.part_count):
+        found += scene.parts[i].factor * zero_acceleration(scene, cython.address(scene.parts[i]))
+    return found
+
+
+def zero_acceleration(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """J Vdot of a condition of two bodies if no freedom accelerated."""
     if scene.flat:
         return demanded_in_plane(scene, row)
-    found: cython.double = row.gamma
+    found: cython.double = 0.0
     if row.b >= 0:
         found += along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a_zero, scene.bodies[row.b].alpha_zero)
     if row.a >= 0:
@@ -179,19 +200,45 @@ def residual_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
 
 def acceleration_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """J Vdot + gamma of a row at the accelerations found, which are less that of gravity, the ground's too."""
-    ground: cython.double = -dot(row.f, scene.gravity)
-    b: cython.double = ground
-    a: cython.double = ground
+    return row.gamma + moved_by(scene, row, -1.0)
+
+
+def moved_by(scene: cython.pointer[Scene], row: cython.pointer[Closure], ground: cython.double) -> cython.double:
+    """J Vdot of a row at what stands in alpha and a; ground: how many times gravity the ground's is."""
+    i: cython.Py_ssize_t
+    if row.kind != SUM:
+        return moved_apart(scene, row, ground)
+    found: cython.double = 0.0
+    for i in range(row.part, row.part + row.part_count):
+        found += scene.parts[i].factor * moved_apart(scene, cython.address(scene.parts[i]), ground)
+    return found
+
+
+def moved_apart(scene: cython.pointer[Scene], row: cython.pointer[Closure], ground: cython.double) -> cython.double:
+    """The same of a condition of two bodies."""
+    b: cython.double = ground * dot(row.f, scene.gravity)
+    a: cython.double = b
     if row.b >= 0:
         b = along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
     if row.a >= 0:
         a = along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
-    return row.gamma + b - a
+    return b - a
 
 
 def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """Size of the terms of `demanded`."""
+    i: cython.Py_ssize_t
+    if row.kind != SUM:
+        return fabs(row.gamma) + size_if_zero(scene, row)
     found: cython.double = fabs(row.gamma)
+    for i in range(row.part, row.part + row.part_count):
+        found += fabs(scene.parts[i].factor) * size_if_zero(scene, cython.address(scene.parts[i]))
+    return found
+
+
+def size_if_zero(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Size of the terms of `zero_acceleration`."""
+    found: cython.double = 0.0
     if row.b >= 0:
         b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
         found += size_of_terms(b, row, b.a_zero, b.alpha_zero)
@@ -203,7 +250,18 @@ def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -
 
 def size_of_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """Size of the terms of `residual_of`."""
+    i: cython.Py_ssize_t
+    if row.kind != SUM:
+        return fabs(row.gamma) + size_moved(scene, row)
     found: cython.double = fabs(row.gamma)
+    for i in range(row.part, row.part + row.part_count):
+        found += fabs(scene.parts[i].factor) * size_moved(scene, cython.address(scene.parts[i]))
+    return found
+
+
+def size_moved(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
+    """Size of the terms of `moved_apart`."""
+    found: cython.double = 0.0
     if row.b >= 0:
         b: cython.pointer[Body] = cython.address(scene.bodies[row.b])
         found += size_of_terms(b, row, b.a, b.alpha)
@@ -229,6 +287,19 @@ def put_unit_load(
         on.f_branch = add_scaled(on.f_branch, -sign, row.f)
 
 
+def put_unit_loads(scene: cython.pointer[Scene], row: cython.pointer[Closure], sign: cython.double) -> cython.void:
+    """The row's load for lambda = sign on all its bodies."""
+    i: cython.Py_ssize_t
+    if row.kind != SUM:
+        put_unit_load(scene, row, row.b, sign)
+        put_unit_load(scene, row, row.a, -sign)
+        return
+    for i in range(row.part, row.part + row.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        put_unit_load(scene, part, part.b, sign * part.factor)
+        put_unit_load(scene, part, part.a, -sign * part.factor)
+
+
 def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """No unit load on the row's path."""
     n: cython.Py_ssize_t
@@ -242,8 +313,7 @@ def clear_path(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cy
 def build_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """e_r: what the freedoms of the row's paths answer to its unit load, by the factored inertias."""
     clear_path(scene, row)
-    put_unit_load(scene, row, row.b, 1.0)
-    put_unit_load(scene, row, row.a, -1.0)
+    put_unit_loads(scene, row, 1.0)
     sweep_column(scene, row)
 
 
@@ -273,10 +343,22 @@ def sweep_column(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
 def push_closures(scene: cython.pointer[Scene]) -> cython.void:
     """Put the multipliers' forces and couples on the bodies, beside the applied loads."""
     r: cython.Py_ssize_t
+    i: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        push(scene, row.b, row.Q, scaled(row.multiplier, row.f), scaled(row.multiplier, row.m))
-        push(scene, row.a, row.Q, scaled(-row.multiplier, row.f), scaled(-row.multiplier, row.m))
+        if row.kind != SUM:
+            push_condition(scene, row, row.multiplier)
+        else:
+            for i in range(row.part, row.part + row.part_count):
+                push_condition(scene, cython.address(scene.parts[i]), row.multiplier * scene.parts[i].factor)
+
+
+def push_condition(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], multiplier: cython.double
+) -> cython.void:
+    """Put the load of a condition of two bodies on them."""
+    push(scene, row.b, row.Q, scaled(multiplier, row.f), scaled(multiplier, row.m))
+    push(scene, row.a, row.Q, scaled(-multiplier, row.f), scaled(-multiplier, row.m))
 
 
 def count_turns(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.void:

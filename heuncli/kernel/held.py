@@ -21,7 +21,7 @@ if not cython.compiled:
     from math import fabs
 
     from heuncli.kernel.algebra import Quaternion, Vec3, add_cross, add_scaled, quaternion_rate
-    from heuncli.kernel.closures import acceleration_of, along_row, size_of_answer
+    from heuncli.kernel.closures import acceleration_of, moved_by, size_of_answer
     from heuncli.kernel.dense import clipped
     from heuncli.kernel.response import move, refactor, take_back
     from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Scene
@@ -103,13 +103,9 @@ def demand_back(scene: cython.pointer[Scene], rounding: cython.double) -> cython
         scene.closures[i].demand = 0.0
     for i in range(scene.contact_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.contacts[i].row])
-        moved = 0.0
         if row.mode != CARRIES:
             continue
-        if row.b >= 0:
-            moved += along_row(row, scene.bodies[row.b].r, scene.bodies[row.b].a, scene.bodies[row.b].alpha)
-        if row.a >= 0:
-            moved -= along_row(row, scene.bodies[row.a].r, scene.bodies[row.a].a, scene.bodies[row.a].alpha)
+        moved = moved_by(scene, row, 0.0)
         if fabs(moved) <= rounding * row.terms:
             row.demand = moved
 

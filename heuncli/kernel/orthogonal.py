@@ -101,15 +101,27 @@ def add_doubled(scene: cython.pointer[Scene], body: cython.pointer[Body], x: cyt
             scene.e[k] += x[k] / scene.root[k]
 
 
-def answer_of_side(
-    scene: cython.pointer[Scene], row: cython.pointer[Closure], body: cython.int, sign: cython.double
+def answer_of_sides(
+    scene: cython.pointer[Scene], whole: cython.pointer[Closure], row: cython.pointer[Closure]
 ) -> cython.double:
-    """e . D^-1 e of the row's load on one of its two bodies alone."""
-    clear_path(scene, row)
+    """e . D^-1 e of the row's load on one of its two bodies alone, and on the other; whole: what it is a part of."""
+    found: cython.double = answer_of_side(scene, whole, row, row.b, 1.0)
+    return found + answer_of_side(scene, whole, row, row.a, -1.0)
+
+
+def answer_of_side(
+    scene: cython.pointer[Scene],
+    whole: cython.pointer[Closure],
+    row: cython.pointer[Closure],
+    body: cython.int,
+    sign: cython.double,
+) -> cython.double:
+    """e . D^-1 e of the row's load on one body."""
+    clear_path(scene, whole)
     put_unit_load(scene, row, body, sign)
-    sweep_column(scene, row)
-    spread_column(scene, row)
-    return answer_of_spread(scene, row)
+    sweep_column(scene, whole)
+    spread_column(scene, whole)
+    return answer_of_spread(scene, whole)
 
 
 def answer_of_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:

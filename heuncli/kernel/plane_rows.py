@@ -116,7 +116,7 @@ def rod_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
 
 
 def demanded_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
+    """J Vdot of a row if no freedom accelerated."""
     x: cython.double = 0.0
     y: cython.double = 0.0
     couple: cython.double = 0.0
@@ -133,7 +133,7 @@ def demanded_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         couple -= alpha
         x -= a.a_zero.x - alpha * (row.Q.y - a.r.y)
         y -= a.a_zero.y + alpha * (row.Q.x - a.r.x)
-    return row.gamma + (row.f.x * x + row.f.y * y + row.m.z * couple)
+    return row.f.x * x + row.f.y * y + row.m.z * couple
 
 
 def unit_load_in_plane(

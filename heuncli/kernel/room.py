@@ -52,9 +52,10 @@ def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: 
     scene.freedom_count = len(tables["freedoms"])
     scene.load_count = len(tables["loads"])
     scene.closure_count = len(tables["closures"])
+    scene.part_count = len(tables["parts"])
     scene.counter_count = len(tables["counters"])
     scene.variable_count = len(tables["variables"])
-    scene.point_count = tables["variables"]["is_point"].tolist().count(1)
+    scene.point_count = tables["variables"]["is_point"].astype(bool).sum().item()
     scene.lent_count = len(tables["lents"])
     scene.island_count = len(tables["islands"])
     scene.watch_count = len(tables["watches"])
@@ -69,6 +70,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.freedoms = cython.cast(cython.pointer[Freedom], memory.rows(tables["freedoms"], cython.sizeof(Freedom)))
         scene.loads = cython.cast(cython.pointer[Load], memory.rows(tables["loads"], cython.sizeof(Load)))
         scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
+        scene.parts = cython.cast(cython.pointer[Closure], memory.rows(tables["parts"], cython.sizeof(Closure)))
         scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
         scene.variables = cython.cast(
             cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
@@ -93,6 +95,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.freedoms = [Freedom(row) for row in tables["freedoms"].tolist()]
         scene.loads = [Load(row) for row in tables["loads"].tolist()]
         scene.closures = [Closure(row) for row in tables["closures"].tolist()]
+        scene.parts = [Closure(row) for row in tables["parts"].tolist()]
         scene.counters = [Counter(row) for row in tables["counters"].tolist()]
         scene.variables = [Variable(row) for row in tables["variables"].tolist()]
         scene.lents = [Lent(row) for row in tables["lents"].tolist()]

@@ -17,7 +17,10 @@ from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-GUIDE, DOT, ROD, TURN = range(4)
+BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
+AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
+ALONG_LINE = 3  # of a load: its length; before that the components of its strain
+GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -104,10 +107,10 @@ class Load(Record):
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
-    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator) stands in x
+    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
     stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
-    length: float  # of a spring without load [m]; of a turn spring its free angle [rad]
-    coefficient: float  # of damping [N s/m], [N m s]; of friction its force [N], torque [N m]
+    length: float  # of a spring without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
+    coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
     factor: float  # of a force or couple: by which the vector is to be multiplied
@@ -119,6 +122,10 @@ class Load(Record):
     row: int  # of a joint that was cut: its first closure row
     row_count: int
     reach: float  # of ENDS: the distance between the two ends [m]
+    frame: Mat3  # of a bushing: its axes, in a
+    to_frame: Mat3  # and those in b that agree with them where it is not turned
+    stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
+    resistances: Vec3  # [N s/m], [N m s]
 
     force: Vec3  # on b
     moment: Vec3
@@ -126,17 +133,21 @@ class Load(Record):
     from_at: Vec3  # where on a
     value: float
     span: float  # distance of the two points; of a turn spring its angle; of what presses whether it was FOUND
+    strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
     unit: Vec3  # of friction by what presses: force or moment on b where that is 1
-    pressed: float  # what presses [N]
+    pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
 
 
 class Closure(Record):
     """A closure row J V = 0: multiplier 1 puts the force f at the point Q and the couple m on b, the opposite on a.
 
     GUIDE: e . (Q - P) = length, e fixed in a. DOT: e . g = 0, e fixed in a, g in b. ROD: |Q - P| = length.
-    TURN: a pin's angle = length, about e fixed in a.
+    TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
+    by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
+    MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
+    coordinates of two freedoms.
     """
 
     kind: int
@@ -159,6 +170,13 @@ class Closure(Record):
     q: Vec3  # point of b
     length: float
     weight: float  # of the gap [m per unit]
+    part: int  # of a SUM: the first of its parts
+    part_count: int
+    factor: float  # of a part
+    c: int  # of a MESH: the body that carries its place and directions; -1: the ground
+    ratio: float  # of the freedom's coordinate
+    freedom_b: int
+    ratio_b: float
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -186,12 +204,14 @@ class Closure(Record):
 class Contact(Record):
     """A one-sided closure row: its margin, sense * gap while it is open, sense * multiplier while closed, is not > 0.
 
-    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves.
+    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves. The
+    row of a latch holds both ways while it is closed, by a place that is told with that: it has no margin.
     """
 
     row: int
-    sense: int  # 1: an upper limit, a rope; -1: a lower limit
+    sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    held_at: int  # of a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
@@ -220,11 +240,16 @@ class Counter(Record):
 
 
 class Variable(Record):
-    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate."""
+    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
+
+    Of a load (OF_LOAD) the length of its line, the rate of that, or a component of its strain.
+    """
 
     freedom: int
     is_rate: int
-    is_point: int
+    is_point: int  # 0, AT_POINT, OF_LOAD
+    load: int
+    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE
     body: int  # of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes
@@ -401,6 +426,21 @@ class LoadTangent(Value):
     moment: Vec3
 
 
+class LineTangent(Value):
+    """What the line between a load's two points changes by along a direction of the state: n, length and its rate."""
+
+    turned: Vec3
+    length: float
+    rate: float
+
+
+class BushingTangent(Value):
+    """What a bushing's force or moment changes by along a direction of the state, and the power of its loss."""
+
+    acts: Vec3
+    power: float
+
+
 class RowTangent(Value):
     """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
 
@@ -427,20 +467,22 @@ class Instants(Value):
     freedom_width: Size
     load_width: Size
     row_width: Size
+    part_width: Size
     whole_width: Size
     column_width: Size
     afresh: bool  # the closure rows are chosen anew at each
     held: bool  # `branches` are given
     causes: bool  # a column a cause is answered, too
-    opening: int  # numbers of `holding` a state; 0: the contacts stay as they are
+    opening: int  # numbers of `holding` a state (take_holding); 0: the contacts stay as they are
     branches: list[float]  # that expressions hold
-    holding: list[float]  # which contacts are closed, and how
+    holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]
     states: list[float]  # settled in place
     bodies: list[float]  # the answers, a kind each (tree/tables.py)
     freedoms: list[float]
     loads: list[float]
     rows: list[float]
+    parts: list[float]
     whole: list[float]  # of the state itself
     columns: list[float]  # of the causes
     y: list[float]  # the state under way
@@ -454,9 +496,10 @@ class Scene(Struct):
     freedom_count: int
     load_count: int
     closure_count: int
+    part_count: int
     counter_count: int
     variable_count: int
-    point_count: int  # variables that are of points
+    point_count: int  # variables that are of points or loads
     lent_count: int
     island_count: int
     watch_count: int
@@ -490,6 +533,7 @@ class Scene(Struct):
     freedoms: list[Freedom]
     loads: list[Load]
     closures: list[Closure]
+    parts: list[Closure]  # of those that are sums
     counters: list[Counter]
     variables: list[Variable]
     bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace

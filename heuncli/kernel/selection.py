@@ -16,9 +16,9 @@ if not cython.compiled:
     from math import fabs, sqrt
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
-    from heuncli.kernel.closures import clear_path, measure_rows, put_unit_load
-    from heuncli.kernel.orthogonal import answer_of_side, factor_closures, list_coupled, take_roots
-    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
+    from heuncli.kernel.closures import clear_path, measure_rows, put_unit_loads
+    from heuncli.kernel.orthogonal import answer_of_sides, factor_closures, list_coupled, take_roots
+    from heuncli.kernel.scene import CARRIES, SHIFT, SUM, Body, Closure, Freedom, Island, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import factor_tree, kinematics, load_along
 
@@ -145,8 +145,7 @@ def jacobian_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
     at: cython.Py_ssize_t
     x: cython.p_double = scene.spread
     clear_path(scene, row)
-    put_unit_load(scene, row, row.b, -1.0)
-    put_unit_load(scene, row, row.a, 1.0)
+    put_unit_loads(scene, row, -1.0)
     for n in range(row.path, row.path + row.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         at = body.answer_at
@@ -257,8 +256,18 @@ def reach_of(scene: cython.pointer[Scene], filled: cython.Py_ssize_t, width: cyt
 def scale_pose(scene: cython.pointer[Scene], row: cython.pointer[Closure], afresh: cython.bint) -> cython.void:
     """The row's scale in the motion: what its two sides answer, each alone, which no cancelling between them can make
     small, and at least a part of what it could answer across its arms."""
-    bound: cython.double = scene.limits.across * row_bound(scene, row)
-    sides: cython.double = answer_of_side(scene, row, row.b, 1.0) + answer_of_side(scene, row, row.a, -1.0)
+    i: cython.Py_ssize_t
+    bound: cython.double = 0.0
+    sides: cython.double = 0.0
+    if row.kind != SUM:
+        bound = row_bound(scene, row, row)
+        sides = answer_of_sides(scene, row, row)
+    else:
+        for i in range(row.part, row.part + row.part_count):
+            part: cython.pointer[Closure] = cython.address(scene.parts[i])
+            bound += part.factor * part.factor * row_bound(scene, row, part)
+            sides += part.factor * part.factor * answer_of_sides(scene, row, part)
+    bound *= scene.limits.across
     if sides > bound:
         bound = sides
     near: cython.double = 1.0 / sqrt(bound) if bound > 0.0 else 0.0
@@ -266,14 +275,19 @@ def scale_pose(scene: cython.pointer[Scene], row: cython.pointer[Closure], afres
         row.pose_scale = near
 
 
-def row_bound(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """What the freedoms of the row's paths would answer from where they are if its load stood across their arms."""
+def row_bound(
+    scene: cython.pointer[Scene], whole: cython.pointer[Closure], row: cython.pointer[Closure]
+) -> cython.double:
+    """What the freedoms of a row's paths would answer from where they are if its load stood across their arms.
+
+    row: the one itself, or one of the parts that the whole is the sum of.
+    """
     n: cython.Py_ssize_t
     k: cython.Py_ssize_t
     found: cython.double = 0.0
     force: cython.double = dot(row.f, row.f)
     couple: cython.double = dot(row.m, row.m)
-    for n in range(row.path, row.path + row.path_count):
+    for n in range(whole.path, whole.path + whole.path_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         if body.ball:
             found += turn_bound(body, row, force)

@@ -13,47 +13,73 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, centripetal, cross, dot, norm, scaled, sub
-    from heuncli.kernel.closures import carried, place_of
+    from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import (
-        DOT,
-        GUIDE,
-        TURN,
-        Body,
-        BodyAtState,
-        BodyTangent,
-        Closure,
-        LoadTangent,
-        MotionTangent,
-        RowTangent,
-        Scene,
-    )
+    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
+    from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
     from heuncli.kernel.tree import direction_of
 
 
 def closures_along(scene: cython.pointer[Scene]) -> cython.void:
     """What the independent rows demand of the answer; their multipliers' loads, as they change, on the bodies."""
     i: cython.Py_ssize_t
+    k: cython.Py_ssize_t
     for i in range(scene.selected_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[scene.selected[i]])
         force: cython.double = scene.multipliers[scene.selected[i]]
-        row.demand = 0.0
-        still: cython.bint = row.a < 0 or not scene.tangents[row.a].moves
-        if still and (row.b < 0 or not scene.tangents[row.b].moves):
+        if row.kind != SUM:
+            row.demand = condition_loads_along(scene, row, force)
             continue
-        d: RowTangent = row_along(scene, row)
-        row.demand = d.acceleration
-        load: LoadTangent = LoadTangent(d.Q, scaled(force, d.f), scaled(force, d.m))
-        push_along(scene, row.b, row.Q, scaled(force, row.f), load)
-        push_along(scene, row.a, row.Q, scaled(-force, row.f), opposite(load))
+        row.demand = 0.0
+        for k in range(row.part, row.part + row.part_count):
+            part: cython.pointer[Closure] = cython.address(scene.parts[k])
+            row.demand += part.factor * condition_loads_along(scene, part, force * part.factor)
+
+
+def condition_loads_along(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], force: cython.double
+) -> cython.double:
+    """What a condition of two bodies demands of the answer; its load, as it changes, on them."""
+    if is_still(scene, row.a) and is_still(scene, row.b) and is_still(scene, row.c if row.kind == MESH else -1):
+        return 0.0
+    d: RowTangent = condition_along(scene, row)
+    load: LoadTangent = LoadTangent(d.Q, scaled(force, d.f), scaled(force, d.m))
+    push_along(scene, row.b, row.Q, scaled(force, row.f), load)
+    push_along(scene, row.a, row.Q, scaled(-force, row.f), opposite(load))
+    return d.acceleration
+
+
+def is_still(scene: cython.pointer[Scene], body: cython.int) -> cython.bint:
+    """Whether nothing of a body's motion changes."""
+    return body < 0 or not scene.tangents[body].moves
 
 
 def row_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
     """Of one row: its place and unit load, its rate and its acceleration J Vdot + gamma."""
+    k: cython.Py_ssize_t
+    if row.kind != SUM:
+        return condition_along(scene, row)
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    found: RowTangent = RowTangent(zero, zero, zero, 0.0, 0.0)
+    for k in range(row.part, row.part + row.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[k])
+        d: RowTangent = condition_along(scene, part)
+        f: Vec3 = add_scaled(found.f, part.factor, d.f)
+        m: Vec3 = add_scaled(found.m, part.factor, d.m)
+        rate: cython.double = found.rate + part.factor * d.rate
+        found = RowTangent(d.Q, f, m, rate, found.acceleration + part.factor * d.acceleration)
+    return found
+
+
+def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
+    """The same of a condition of two bodies."""
+    if row.kind == MESH:
+        return mesh_along(scene, row)
     Q: Vec3 = point_along(scene, row.b, row.q).x
     if row.kind == GUIDE:
         return guide_along(scene, row, Q)
@@ -62,30 +88,6 @@ def row_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Row
     elif row.kind == TURN:
         return turn_row_along(scene, row, Q)
     return rod_along(scene, row, Q)
-
-
-def acceleration_at(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Vec3:
-    """Acceleration, less gravity, of the body's point at the place x; in a planar scene what lies in the plane."""
-    if body < 0:
-        return Vec3(-scene.gravity.x, -scene.gravity.y, 0.0 if scene.flat else -scene.gravity.z)
-    on: cython.pointer[Body] = cython.address(scene.bodies[body])
-    at: cython.pointer[BodyAtState] = cython.address(scene.at_state[body])
-    arm: Vec3 = sub(x, on.r)
-    return add(add_cross(at.a, at.alpha, arm), centripetal(on.omega, arm))
-
-
-def carried_along(scene: cython.pointer[Scene], body: cython.int, x: Vec3, change: Vec3) -> MotionTangent:
-    """What velocity and acceleration of the body's point at the place x change by as that place does."""
-    if body < 0:
-        return MotionTangent(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
-    on: cython.pointer[Body] = cython.address(scene.bodies[body])
-    d: cython.pointer[BodyTangent] = cython.address(scene.tangents[body])
-    arm: Vec3 = sub(x, on.r)
-    way: Vec3 = sub(change, d.r)
-    swept: Vec3 = add_cross(cross(d.omega, arm), on.omega, way)
-    a: Vec3 = add_cross(add_cross(d.a, d.alpha, arm), scene.at_state[body].alpha, way)
-    a = add_cross(add_cross(a, d.omega, cross(on.omega, arm)), on.omega, swept)
-    return MotionTangent(add(d.v, swept), a)
 
 
 def guide_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:
@@ -163,17 +165,3 @@ def turn_row_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q
     bent: cython.double = dot(add_cross(cross(da, row.m), a, e), turn) + dot(swept, change)
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     return RowTangent(Q, zero, e, dot(e, turn) + dot(row.m, change), dot(e, A) + dot(row.m, dA) + bent)
-
-
-def alpha_at(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """Angular acceleration of a body at the state; none of the ground's."""
-    if body < 0:
-        return Vec3(0.0, 0.0, 0.0)
-    return scene.at_state[body].alpha
-
-
-def alpha_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
-    """What the angular acceleration of a body changes by."""
-    if body < 0:
-        return Vec3(0.0, 0.0, 0.0)
-    return scene.tangents[body].alpha

@@ -48,7 +48,8 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         self.expressions: Expressions = expressions
         self.memory: Memory = Memory()
-        self.opening: cython.int = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
+        told: Any = [*tables["contacts"]["opens"].tolist(), *tables["contacts"]["held_at"].tolist()]
+        self.opening: cython.int = sum(1 for k in told if k)
         scene.programs = cython.address(expressions.programs)
         scene.held_count = expressions.held
         take_numbers(scene, tables, numbers)
@@ -65,7 +66,7 @@ class Workspace:
             judge_start(cython.address(self.scene), t, memory.doubles(state))
 
     def hold(self, holding: Any) -> None:
-        """Open and close the contacts, until the next call: of each 0 open, 1 closed, 2 closed by others."""
+        """Open and close the contacts, until the next call: of each a number, then of each latch one (take_holding)."""
         memory: Memory = Memory()
         if self.opening:
             take_holding(cython.address(self.scene), memory.doubles(holding), 0)
@@ -99,9 +100,9 @@ class Workspace:
     def recover(self, arrays: dict[str, Any], afresh: cython.bint, causes: cython.bint) -> None:
         """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place.
 
-        Into `bodies`, `freedoms`, `loads`, `rows` goes what is told of each of these, into `whole` of an instant: the
-        gap over all rows, how many freedoms had no inertia behind them, the least pivot of the closures, and what of
-        all rows the accelerations do not meet. `branches`: those that expressions
+        Into `bodies`, `freedoms`, `loads`, `rows`, `parts` goes what is told of each of these, into `whole` of an
+        instant: the gap over all rows, how many freedoms had no inertia behind them, the least pivot of the closures,
+        and what of all rows the accelerations do not meet. `branches`: those that expressions
         hold, as many numbers an instant; empty: as the states say; `holding`: the same of the contacts, which `hold`
         takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: a column a cause
         (columns.py) goes into `columns`.
@@ -119,6 +120,7 @@ class Workspace:
             len(arrays["freedoms"]) // count,
             len(arrays["loads"]) // count,
             len(arrays["rows"]) // count,
+            len(arrays["parts"]) // count,
             len(arrays["whole"]) // count,
             len(arrays["columns"]) // count,
             afresh,
@@ -133,6 +135,7 @@ class Workspace:
             memory.whole(arrays["freedoms"]),
             memory.whole(arrays["loads"]),
             memory.whole(arrays["rows"]),
+            memory.whole(arrays["parts"]),
             memory.whole(arrays["whole"]),
             memory.whole(arrays["columns"]),
             memory.zeros(n),

@@ -22,9 +22,10 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
     """The smallest scene that moves as this one does; stages: each step is one.
 
-    Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less.
+    Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less; nor where
+    couplings look at bodies and coordinates that a smaller scene might be without.
     """
-    if scene.mechanism.rubbing:
+    if scene.mechanism.rubbing or scene.mechanism.couplings:
         return Reduced((), ())
     steps: list[Reduction] = []
     kept: list[str] = []

@@ -5,12 +5,13 @@ A self-stress lives in one island, so each is looked at alone and measured by it
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.couplings import CoupledRow
 from heuncli.mechanism.model import GROUND
 from heuncli.records import replace
 from heuncli.results import Array
@@ -59,8 +60,18 @@ def islands(layout: Layout) -> list[Island]:
 
 def loop_of(layout: Layout, joint: int) -> set[int]:
     """Bodies (tree order) around the loop of a cut joint: on the path to one of its ends and not to the other."""
-    cut = layout.mechanism.joints[joint]
+    mechanism = layout.mechanism
+    if joint >= len(mechanism.joints):
+        return set().union(
+            *(loop_of_coupling(layout, row) for row in mechanism.couplings[joint - len(mechanism.joints)].rows)
+        )
+    cut = mechanism.joints[joint]
     return set(layout.path(cut.a)) ^ set(layout.path(cut.b))
+
+
+def loop_of_coupling(layout: Layout, row: CoupledRow) -> set[int]:
+    """Bodies whose freedoms a coupling's row may move: of each of its parts those of a loop through its two ends."""
+    return {i for part in row.parts for i in set(layout.path(part.a)) ^ set(layout.path(part.b))}
 
 
 def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
@@ -74,18 +85,32 @@ def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
         own = own[own["driven"] == 0]
         freedoms += own["answer_at"].tolist()
         turns += (own["kind"] != kernel.SHIFT).tolist()
-    couples = np.isin(layout.tables["closures"]["kind"][rows], (kernel.DOT, kernel.TURN))
+    couples = np.array([is_couple(layout, r) for r in rows.tolist()])
     length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
     return Island(rows, np.array(freedoms, dtype=int), couples, np.array(turns, dtype=bool), length)
 
 
-def mean_lever(layout: Layout, joints: Iterable[int]) -> float:
+def is_couple(layout: Layout, r: int) -> bool:
+    """Whether the load of a closure row is a couple, of a sum all of its parts'."""
+    row = layout.tables["closures"][r]
+    parts = layout.tables["parts"][row["part"] : row["part"] + row["part_count"]]
+    kinds = parts["kind"] if row["kind"] == kernel.SUM else row["kind"]
+    return bool(np.all(np.isin(kinds, (kernel.DOT, kernel.TURN))))
+
+
+def mean_lever(layout: Layout, joints: Collection[int]) -> float:
     """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size.
 
     Points on one axis, seen along it, are apart by rounding: measured by that, rounding of their rows held a turn.
     """
     bodies = layout.mechanism.bodies
-    of = [layout.mechanism.joints[k] for k in joints]
-    arms = [p - bodies[b].center for j in of for b, p in ((j.a, j.p), (j.b, j.q)) if b != GROUND]
+    count = len(layout.mechanism.joints)
+    of = [layout.mechanism.joints[k] for k in joints if k < count]
+    parts = [
+        part for k in joints if k >= count for row in layout.mechanism.couplings[k - count].rows for part in row.parts
+    ]
+    places = [(b, p) for j in of for b, p in ((j.a, j.p), (j.b, j.q))]
+    places += [(b, np.asarray(p)) for part in parts for b, p in part.places]
+    arms = [p - bodies[b].center for b, p in places if b != GROUND]
     mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
     return mean if mean > tolerances.GAP_ROUNDING * layout.size else layout.size

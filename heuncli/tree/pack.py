@@ -21,6 +21,7 @@ from heuncli.mechanism.model import (
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
+from heuncli.tree.coupled_rows import ends, part_row, sum_row
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
@@ -104,6 +105,7 @@ def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
     kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
+    kept |= {k for coupling in mechanism.couplings for k in coupling.joints}
     return kept | {k for k in sprung(mechanism) if len(JOINTS[mechanism.joints[k].kind].turns) == 2}
 
 
@@ -151,11 +153,12 @@ class _Builder:
         joint = self.mechanism.joints[h.joint]
         return joint.p if h.reverse else joint.q
 
-    def relative(self, body: int, point: Array) -> Array:
+    def relative(self, body: int, point: Vector) -> Array:
         """A body's point from its joint point, body axes; a ground point as it is."""
-        return point if body == GROUND else point - self.reference[self.place[body]]
+        return np.asarray(point) if body == GROUND else point - self.reference[self.place[body]]
 
     def in_tree(self, body: int) -> int:
+        """A body's place in the tree."""
         return body if body == GROUND else self.place[body]
 
     def bodies(self) -> None:
@@ -290,6 +293,7 @@ class _Builder:
         self.counters: dict[int, int] = {}
         self.contacts: list[Contact] = []
         self.one_sided: list[ContactRow] = []
+        self.part_rows: list[ClosureRow] = []
         loose = {stop.joint for stop in self.mechanism.stops if stop.quantity == "length"}
         for k in self.spanning.cut:
             joint, s = self.mechanism.joints[k], self.starts[k]
@@ -308,25 +312,52 @@ class _Builder:
                 self._row(k, kernel.DOT, e=joint_frame(joint, d), g=f, weight=self.size)
             if "angle" in kind.coordinates:
                 self.counters[k] = -1
+        self.coupled_rows()
         for stop in self.mechanism.stops:
             for limit, sense in ((stop.low, -1), (stop.high, 1)):
                 if limit is not None:
                     self._limit(stop, limit, sense)
+        self._latches()
+
+    def coupled_rows(self) -> None:
+        """The rows of the couplings, which come after those of the cut joints."""
+        freedoms = {(f.joint, f.quantity): i for i, f in enumerate(self.freedoms)}
+        for owner, coupling in enumerate(self.mechanism.couplings, len(self.mechanism.joints)):
+            for row in coupling.rows:
+                if row.tension_only:
+                    self._opening(owner, coupling.name, row.restitution)
+                self.row_joint.append(owner)
+                self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
+                self.part_rows += [part_row(part, self.in_tree, self.relative, freedoms) for part in row.parts]
+                paths = (self._path(self.in_tree(i)) for i in ends(row))
+                self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
 
     def _rope(self, k: int) -> None:
         """The row that comes next is that of a rope."""
         joint = self.mechanism.joints[k]
+        self._opening(k, joint.name, joint.restitution)
+
+    def _opening(self, owner: int, name: str, restitution: float | None) -> None:
+        """The row that comes next pulls alone; without restitution the run ends where it would push."""
         row = len(self.row_joint)
-        if joint.restitution is not None:
-            self.contacts.append(Contact(joint.name, True, k, row, 1, joint.restitution))
-        opens = len(self.contacts) if joint.restitution is not None else 0
+        if restitution is not None:
+            self.contacts.append(Contact(name, True, owner, row, 1, restitution))
+        opens = len(self.contacts) if restitution is not None else 0
         self.one_sided.append(ContactRow(row, 1, opens))
 
-    def _limit(self, stop: Stop, limit: float, sense: int) -> None:
-        """The row of one limit of a stop."""
+    def _latches(self) -> None:
+        """The rows of all latches."""
+        latches = [stop for stop in self.mechanism.stops if stop.latch is not None]
+        count = len(self.contacts) + len(latches)
+        for k, stop in enumerate(latches):
+            assert stop.latch is not None
+            self._limit(stop, stop.latch.at or 0.0, 0, held_at=count + k + 1)
+
+    def _limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
+        """The row of one limit of a stop, or of a latch."""
         joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts)))
+        self.one_sided.append(ContactRow(row, sense, len(self.contacts), held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
         elif stop.quantity == "travel":
@@ -383,6 +414,7 @@ class _Builder:
             "bodies": table_of(kernel.Body, self.body_rows),
             "freedoms": table_of(kernel.Freedom, self.freedom_rows),
             "closures": table_of(kernel.Closure, self.closure_rows, places),
+            "parts": table_of(kernel.Closure, self.part_rows),
             "counters": table_of(kernel.Counter, self._counter_rows()),
             "contacts": table_of(kernel.Contact, self.one_sided),
             "groups": table_of(kernel.Group, self.groups),
@@ -409,7 +441,7 @@ class _Builder:
             pack=Pack(),
             work_at=work_at,
             contacts=tuple(self.contacts),
-            flat=self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
+            flat=not self.part_rows and self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return frame_of(with_islands(layout))
 

@@ -119,9 +119,7 @@ def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
 def negative(draft: DraftDocument) -> Iterator[Violation]:
     """Coefficients of springs, dampers and friction, and tolerances of expectations, are not negative."""
     for name, load in draft.document.forces.items():
-        for key in ("stiffness", "length", "damping", "sliding", "coefficient", "torque", "force"):
-            value = getattr(load, key, None)
-            value = getattr(value, "constant", value)
+        for key, value in resisting(load):
             if isinstance(value, float) and value < 0.0:
                 hint = TURN_ROUND.get(key, "it resists with a number above 0; what drives is a torque, force or drive")
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
@@ -132,6 +130,19 @@ def negative(draft: DraftDocument) -> Iterator[Violation]:
             if value is not None and value < 0.0:
                 hint = "it is how far what is found may be off, to either side"
                 yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
+
+
+def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
+    """Every number that tells how much a load resists; of a law of its own what it does is not told by a sign."""
+    keys = ["stiffness", "length", "damping", "sliding", "coefficient", "turning", "turning_damping", "limit"]
+    if isinstance(load, f.FrictionEntry):
+        keys += ["torque", "force"]
+    for key in keys:
+        value = getattr(load, key, None)
+        if isinstance(value, f.ShiftLaws | f.TurnLaws):
+            value = (value.x, value.y, value.z)
+        for part in value if isinstance(value, tuple) else (value,):
+            yield key, getattr(part, "constant", part)
 
 
 @rule("shape-form")

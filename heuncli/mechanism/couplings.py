@@ -1,0 +1,105 @@
+"""Couplings: conditions between bodies that no joint makes, as sums of conditions of two bodies each.
+
+Gears, belts, screws, ropes, cams and wheels are all of them such: what they hold is told here in the numbers that the
+kernel reads (kernel/scene.py, Closure), and nothing behind this knows their kinds but what tells of them.
+"""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from heuncli.named_tuples import NamedTuple
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.spec import couplings as spec
+
+GROUND = -1
+NOWHERE = (0.0, 0.0, 0.0)
+
+
+class Coordinate(NamedTuple):
+    """A joint's coordinate and how many times it is taken."""
+
+    joint: int
+    quantity: Literal["angle", "travel"]
+    ratio: float
+
+
+@record
+class CouplingPart:
+    """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
+
+    p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
+    its gap is counted by, of a turn one, of a mesh one or two.
+    """
+
+    kind: Literal["guide", "dot", "rod", "turn", "mesh"]
+    a: int
+    b: int
+    p: Array | tuple[float, float, float] = NOWHERE
+    q: Array | tuple[float, float, float] = NOWHERE
+    e: Array | tuple[float, float, float] = NOWHERE
+    g: Array | tuple[float, float, float] = NOWHERE
+    factor: float = 1.0
+    c: int = GROUND
+    coordinates: tuple[Coordinate, ...] = ()
+
+    @property
+    def is_couple(self) -> bool:
+        """Whether its load is a couple alone."""
+        return self.kind in ("dot", "turn")
+
+    @property
+    def places(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it looks at them, body axes."""
+        if self.is_couple:
+            return ()
+        if self.kind == "mesh":
+            return ((self.c, np.asarray(self.p)),)
+        return (self.a, np.asarray(self.p)), (self.b, np.asarray(self.q))
+
+    @property
+    def bodies(self) -> tuple[int, ...]:
+        """All bodies that it looks at."""
+        return (self.a, self.b, self.c) if self.kind == "mesh" else (self.a, self.b)
+
+
+@record
+class CoupledRow:
+    """One scalar condition: the sum of its parts is the length; None: as it is at the assembled start.
+
+    weight: of its gap [m per unit], 0: the scene's size. tension_only: its multiplier is never above zero; with
+    restitution it opens and closes, without the run ends where it would push.
+    """
+
+    parts: tuple[CouplingPart, ...]
+    length: float | None = None
+    weight: float = 1.0
+    tension_only: bool = False
+    restitution: float | None = None
+
+    @property
+    def is_couple(self) -> bool:
+        """Whether its loads are couples alone."""
+        return all(part.is_couple for part in self.parts)
+
+
+@record
+class Coupling:
+    """A coupling and its conditions; given: as the spec means it."""
+
+    name: str
+    rows: tuple[CoupledRow, ...]
+    given: spec.Coupling
+
+    @property
+    def bodies(self) -> frozenset[int]:
+        """All bodies that it looks at, without the ground."""
+        return frozenset(i for row in self.rows for part in row.parts for i in part.bodies if i != GROUND)
+
+    @property
+    def joints(self) -> frozenset[int]:
+        """The joints whose coordinates it counts by."""
+        return frozenset(x.joint for row in self.rows for part in row.parts for x in part.coordinates)

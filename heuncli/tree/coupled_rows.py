@@ -1,0 +1,58 @@
+"""The closure rows of couplings: sums of conditions of two bodies, which the kernel has in a table of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
+from heuncli.tree.rows import ZERO, ClosureRow, Vector
+
+KINDS = {"guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH}
+
+InTree = Callable[[int], int]  # a body's place in the tree
+Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
+
+
+def part_row(
+    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+) -> ClosureRow:
+    """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
+    counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
+    (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
+    return ClosureRow(
+        kind=KINDS[part.kind],
+        a=in_tree(part.a),
+        b=in_tree(part.b),
+        p=relative(part.c if part.kind == "mesh" else part.a, part.p),
+        q=relative(part.b, part.q),
+        weight=1.0,
+        freedom=freedom,
+        e=part.e,
+        g=part.g,
+        factor=part.factor,
+        c=in_tree(part.c),
+        ratio=ratio,
+        freedom_b=freedom_b,
+        ratio_b=ratio_b,
+    )
+
+
+def sum_row(row: CoupledRow, first: int, size: float) -> ClosureRow:
+    """The row that is the sum of its parts, from the first of them on; its ends are those of that one."""
+    return ClosureRow(
+        kind=kernel.SUM,
+        a=-1,
+        b=-1,
+        p=ZERO,
+        q=ZERO,
+        weight=row.weight or size,
+        length=row.length or 0.0,
+        part=first,
+        part_count=len(row.parts),
+    )
+
+
+def ends(row: CoupledRow) -> set[int]:
+    """The bodies that the row's load acts on."""
+    return {i for part in row.parts for i in (part.a, part.b)} - {GROUND}
