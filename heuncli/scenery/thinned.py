@@ -14,7 +14,9 @@ from heuncli.results import Array
 
 MOST = 6000  # triangles of a mesh that are drawn
 CELLS = 64  # along each of its extents, to begin with
-EDGE = 0.8  # cosine of the angle between two faces below which the side between them is an edge: as page/surfaces.js has
+EDGE = (
+    0.8  # cosine of the angle between two faces below which the side between them is an edge: as page/surfaces.js has
+)
 
 
 class Drawn(NamedTuple):

@@ -22,7 +22,7 @@ def grid(P: Array) -> Array:
     """The triangles of a net of points (n, m, 3) that closes both ways."""
     a, b = P, np.roll(P, -1, axis=0)
     c, d = np.roll(b, -1, axis=1), np.roll(P, -1, axis=1)
-    return np.concatenate([np.stack([a, b, c], axis=2).reshape(-1, 3, 3), np.stack([a, c, d], axis=2).reshape(-1, 3, 3)])
+    return np.concatenate([np.stack(three, axis=2).reshape(-1, 3, 3) for three in ((a, b, c), (a, c, d))])
 
 
 def torus(n: int, m: int, R: float = 1.0, r: float = 0.3) -> Array:
