@@ -89,11 +89,6 @@ class Latches:
             found[i], found[n + self.layout.latches.index(i)] = 1.0, at
         return found
 
-    @property
-    def unwatched(self) -> list[int]:
-        """The other contacts whose coordinates are held."""
-        return [i for i in self.coordinates if i not in self.stops and self.is_held(i)]
-
     def let_go(self, said: Bolts) -> list[str]:
         """Let those go that are drawn back; their names."""
         gone = [i for i, back in zip(self.stops, said.back, strict=True) if back and i in self.holds]
