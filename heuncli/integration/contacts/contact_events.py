@@ -116,7 +116,7 @@ class Contacts:
         self.evaluator, self.last = evaluator, last
         self.layout = evaluator.layout
         self.holding = self.layout.all_open
-        self.latches = Latches(self.layout)
+        self.latches = Latches(self.layout, last)
         self.strikes: dict[str, int] = {}
         self.notes: dict[str, None] = {}
         self.since, self.at_once = -1.0, 0
