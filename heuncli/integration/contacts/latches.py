@@ -1,6 +1,6 @@
 """Latches: which of them hold at an instant of a run, and where.
 
-    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches          (a row of (45)-(48))
+    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches, one more row of a blow's equations
 A latch is out while its own condition is true and that of its release is not. Out, it catches what touches its stop's
 limit and does not leave it, what comes through its value, or what it is to hold wherever that is. What is caught has no
 rate behind the blow, whatever the restitution of the stop, and stays until the release becomes true. A coordinate that
