@@ -46,6 +46,7 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     at = put(out, at, load.moment)
     at = put(out, at, load.at)
     at = put(out, at, load.from_at)
+    at = put(out, at, load.strain)
     out[at] = load.value
     out[at + 1] = load.span
     out[at + 2] = load.rate
@@ -127,6 +128,19 @@ def recover_state(
         balance(scene, True)
     judge_closures(scene, t)
     return idle
+
+
+def put_measured(
+    scene: cython.pointer[Scene], bodies: cython.p_double, gaps: cython.p_double, rates: cython.p_double
+) -> cython.void:
+    """All bodies, as `put_body`, and gap and rate of each closure row, as they stand: nothing is settled."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for i in range(scene.body_count):
+        at = put_body(bodies, at, cython.address(scene.bodies[i]))
+    for i in range(scene.closure_count):
+        gaps[i] = scene.closures[i].gap
+        rates[i] = scene.closures[i].rate
 
 
 def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:

@@ -27,6 +27,7 @@ if not cython.compiled:
         Lent,
         Limits,
         Load,
+        Piece,
         Scene,
         Variable,
         Watch,
@@ -55,7 +56,7 @@ def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: 
     scene.part_count = len(tables["parts"])
     scene.counter_count = len(tables["counters"])
     scene.variable_count = len(tables["variables"])
-    scene.point_count = tables["variables"]["is_point"].tolist().count(1)
+    scene.point_count = tables["variables"]["is_point"].astype(bool).sum().item()
     scene.lent_count = len(tables["lents"])
     scene.island_count = len(tables["islands"])
     scene.watch_count = len(tables["watches"])
@@ -72,6 +73,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
         scene.parts = cython.cast(cython.pointer[Closure], memory.rows(tables["parts"], cython.sizeof(Closure)))
         scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
+        scene.pieces = cython.cast(cython.pointer[Piece], memory.rows(tables["pieces"], cython.sizeof(Piece)))
         scene.variables = cython.cast(
             cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
         )
@@ -97,6 +99,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.closures = [Closure(row) for row in tables["closures"].tolist()]
         scene.parts = [Closure(row) for row in tables["parts"].tolist()]
         scene.counters = [Counter(row) for row in tables["counters"].tolist()]
+        scene.pieces = [Piece(row) for row in tables["pieces"].tolist()]
         scene.variables = [Variable(row) for row in tables["variables"].tolist()]
         scene.lents = [Lent(row) for row in tables["lents"].tolist()]
         scene.islands = [Island(row) for row in tables["islands"].tolist()]

@@ -17,7 +17,10 @@ from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
+BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
+AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
+ALONG_LINE = 3  # of a load: its length; before that the components of its strain
+GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -79,8 +82,16 @@ class Freedom(Record):
     program: Program  # of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
     offset: float  # of the coordinate against the drive's
+    path: int  # of a point that runs along a path: its first piece
+    pieces: int  # and how many it has; 0: its direction is fixed
+    period: float  # of the coordinate, where the path is closed; else 0
+    reach: float  # bounds of the path's |r|, |r'| and |r''|
+    slope: float
+    bend: float
 
-    s: Vec3  # its direction
+    s: Vec3  # its direction, of unit length or, along a path, r'
+    curved: Vec3  # along a path r'', else zero
+    twisted: Vec3  # and r'''
     U_turn: Vec3  # inertia against it, I s: moment and force
     U_shift: Vec3
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
@@ -104,10 +115,10 @@ class Load(Record):
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
-    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator) stands in x
+    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
     stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
-    length: float  # of a spring without load [m]; of a turn spring its free angle [rad]
-    coefficient: float  # of damping [N s/m], [N m s]; of friction its force [N], torque [N m]
+    length: float  # of a spring without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
+    coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
     factor: float  # of a force or couple: by which the vector is to be multiplied
@@ -119,6 +130,10 @@ class Load(Record):
     row: int  # of a joint that was cut: its first closure row
     row_count: int
     reach: float  # of ENDS: the distance between the two ends [m]
+    frame: Mat3  # of a bushing: its axes, in a
+    to_frame: Mat3  # and those in b that agree with them where it is not turned
+    stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
+    resistances: Vec3  # [N s/m], [N m s]
 
     force: Vec3  # on b
     moment: Vec3
@@ -126,10 +141,11 @@ class Load(Record):
     from_at: Vec3  # where on a
     value: float
     span: float  # distance of the two points; of a turn spring its angle; of what presses whether it was FOUND
+    strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
     unit: Vec3  # of friction by what presses: force or moment on b where that is 1
-    pressed: float  # what presses [N]
+    pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
 
 
 class Closure(Record):
@@ -139,7 +155,7 @@ class Closure(Record):
     TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
-    coordinates of two freedoms.
+    coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
     """
 
     kind: int
@@ -169,6 +185,14 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    pieces: int
+    period: float
+    swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    radius: float  # of the roller; 0: a point
+    pivot: Vec3
+    h: Vec3
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -220,6 +244,25 @@ class Contact(Record):
     rate_first: float
 
 
+class Piece(Record):
+    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h from where the coordinate is `begin`."""
+
+    begin: float
+    c0: Vec3
+    c1: Vec3
+    c2: Vec3
+    c3: Vec3
+
+
+class PathPoint(Value):
+    """A place of a path with its derivatives by the coordinate."""
+
+    r: Vec3
+    slope: Vec3
+    bend: Vec3
+    twist: Vec3
+
+
 class Counter(Record):
     """The angle of a pin that was cut, counted on over many turns as a state of its own."""
 
@@ -232,11 +275,16 @@ class Counter(Record):
 
 
 class Variable(Record):
-    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate."""
+    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
+
+    Of a load (OF_LOAD) the length of its line, the rate of that, or a component of its strain.
+    """
 
     freedom: int
     is_rate: int
-    is_point: int
+    is_point: int  # 0, AT_POINT, OF_LOAD
+    load: int
+    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE
     body: int  # of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes
@@ -413,6 +461,21 @@ class LoadTangent(Value):
     moment: Vec3
 
 
+class LineTangent(Value):
+    """What the line between a load's two points changes by along a direction of the state: n, length and its rate."""
+
+    turned: Vec3
+    length: float
+    rate: float
+
+
+class BushingTangent(Value):
+    """What a bushing's force or moment changes by along a direction of the state, and the power of its loss."""
+
+    acts: Vec3
+    power: float
+
+
 class RowTangent(Value):
     """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
 
@@ -421,6 +484,24 @@ class RowTangent(Value):
     m: Vec3
     rate: float
     acceleration: float
+
+
+class Cam(Value):
+    """A cam and its follower in the world; or what these change by."""
+
+    e: Vec3  # the disc's axis
+    g: Vec3  # the follower's axis or guide
+    C: Vec3  # the follower's point, from the disc's axis on
+    w: Vec3  # its velocity against the carrier, by a unit of the follower's rate
+    h: Vec3  # the normal of its face
+    slope: float  # L'
+
+
+class CamContact(Value):
+    """Where a cam touches, from the follower's point on, and the direction of its load there, of any length."""
+
+    beside: Vec3
+    n: Vec3
 
 
 class MotionTangent(Value):
@@ -471,7 +552,7 @@ class Scene(Struct):
     part_count: int
     counter_count: int
     variable_count: int
-    point_count: int  # variables that are of points
+    point_count: int  # variables that are of points or loads
     lent_count: int
     island_count: int
     watch_count: int
@@ -508,6 +589,7 @@ class Scene(Struct):
     parts: list[Closure]  # of those that are sums
     counters: list[Counter]
     variables: list[Variable]
+    pieces: list[Piece]
     bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace
     freedoms_beside: list[Freedom]
     lents: list[Lent]

@@ -13,7 +13,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, rotate, scaled, sub, transform
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
     from heuncli.kernel.scene import (
         SHIFT,
         TURN_IN_BODY,
@@ -47,20 +47,6 @@ def move_along(scene: cython.pointer[Scene], y: cython.p_double, along: cython.p
         else:
             orient_along(scene, body, d)
         resist_along(body, cython.address(scene.at_state[i]), d)
-    if scene.point_count:
-        points_along(scene)
-
-
-def points_along(scene: cython.pointer[Scene]) -> cython.void:
-    """Of the variables that are places and velocities of points."""
-    i: cython.Py_ssize_t
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point:
-            there: PointMotion = point_along(scene, variable.body, variable.q)
-            scene.slopes[i] = dot(variable.direction, there.v if variable.is_rate else there.x)
-            if scene.slopes[i] != 0.0:
-                scene.sloping = 1
 
 
 def coordinates_along(scene: cython.pointer[Scene], along: cython.p_double) -> cython.void:
@@ -162,12 +148,20 @@ def shift_along(
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
         own: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[k])
         if freedom.kind == SHIFT:
-            own.s = cross(turn, freedom.s)
+            own.s = add_scaled(cross(turn, freedom.s), own.q, freedom.curved)
             d.arm = add_scaled(d.arm, own.q, freedom.s)
+            if freedom.pieces:
+                d.a = add(d.a, bent_along(freedom, own, turn))
             d.v = add_scaled(add_scaled(d.v, own.u, freedom.s), freedom.u, own.s)
             d.a = add_scaled(d.a, own.udot, own.s)
     if body.parent < 0:
         d.r = d.arm
+
+
+def bent_along(freedom: cython.pointer[Freedom], own: cython.pointer[FreedomTangent], turn: Vec3) -> Vec3:
+    """Of u^2 r'', what a path adds to sum udot s; it turns with the parent, and changes with the coordinate."""
+    bend: Vec3 = add_scaled(cross(turn, freedom.curved), own.q, freedom.twisted)
+    return scaled(freedom.u, add_scaled(scaled(2.0 * own.u, freedom.curved), freedom.u, bend))
 
 
 def orient_along(
@@ -241,6 +235,13 @@ def swung(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return cross(scene.tangents[body].turn, a)
+
+
+def turn_along_of(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """By what a body turns; the ground does not."""
+    if body < 0:
+        return Vec3(0.0, 0.0, 0.0)
+    return scene.tangents[body].turn
 
 
 def omega_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:

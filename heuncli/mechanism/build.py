@@ -9,11 +9,14 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Directed,
+    Elastic,
     Joint,
     JointLoad,
     Load,
@@ -69,8 +72,14 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     if planar:
         told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
+        told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
+    couplings: tuple[Coupling, ...] = ()
+    if spec.couplings:
+        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+
+        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -82,6 +91,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         stops=stops,
         conditions=conditions,
         points=points,
+        couplings=couplings,
     )
 
 
@@ -134,7 +144,7 @@ def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
 
 def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
-    axis = unit(j.axis)
+    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
         a=a, p=np.array(j.p), b=b, q=np.array(j.q),
@@ -142,8 +152,13 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
-        p_name=j.p_name, q_name=j.q_name,
+        p_name=j.p_name, q_name=j.q_name, path=j.path,
     )  # fmt: skip
+
+
+def coupled(spec: m.Spec) -> set[str]:
+    """The joints whose coordinates are coupled."""
+    return {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(
@@ -197,16 +212,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (None, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
-        case m.Torque():
+        case m.Bushing():
+            return bushing(name, f, index)
+        case m.Torque() | m.Motor():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
+            if f.torque is not None:
+                return JointLoad(name, "torque", k, f.torque)
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
         case m.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
+            if f.law is not None:
+                return JointLoad(name, "torque", k, f.law)
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
@@ -215,10 +238,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> Bushing:
+    """Six springs and dampers."""
+
+    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
+
+    a, b = f.from_, f.to
+    return Bushing(
+        name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
+        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+    )  # fmt: skip
+
+
 def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     """Friction of a given size, or by what of the joint's own load presses."""
     if f.coefficient is None:
-        return JointLoad(name, "friction", joint, None, f.torque or 0.0, f.force or 0.0, f.speed)
+        of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
+        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
     turning, speed = f.coefficient * (f.radius or 0.0), f.speed
     if f.radius is not None:
         return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")

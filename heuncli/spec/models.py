@@ -12,12 +12,17 @@ import math
 from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
+from heuncli.spec.couplings import Coupling
+
+if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
+    from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -28,10 +33,12 @@ Ref = TypeVar("Ref")  # what a body or joint is called by: its name, or its numb
 V = TypeVar("V")  # a vector
 M = TypeVar("M")  # a matrix
 ZERO: Vec = (0.0, 0.0, 0.0)
+X: Vec = (1.0, 0.0, 0.0)
 Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
+NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
 
 
 class End(NamedTuple):
@@ -49,9 +56,12 @@ class Ground(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of a body: one of mass, density, line_density is given; of the measures those its type has."""
+    """A part of a body: one of mass, density, line_density is given; of the measures those its type has.
 
-    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point"]
+    A mesh stands in the units and axes of its file: a corner x is at + rotation (scale x) [m].
+    """
+
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
     mass: float | None = None
     density: float | None = None
     line_density: float | None = None
@@ -64,6 +74,8 @@ class Shape(NamedTuple):
     radius: float | None = None
     inner_radius: float | None = None
     to_radius: float | None = None
+    scale: float | None = None
+    mesh: TriangleMesh | None = None
 
 
 @record
@@ -142,7 +154,8 @@ class Joint(Generic[Ref, V]):
     length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
     drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
-    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names.
+    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
+    of a curve, from the point p on, a's axes.
     """
 
     name: str
@@ -166,6 +179,7 @@ class Joint(Generic[Ref, V]):
     bearing: float | None = None
     p_name: str | None = None
     q_name: str | None = None
+    path: Path | None = None
 
 
 class PointForce(NamedTuple):
@@ -205,23 +219,25 @@ class Actuator(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """A spring and damper between two points: N/m, free length [m], N s/m."""
+    """A spring and damper between two points: N/m, free length [m], N s/m; or its force [N], positive pushes apart."""
 
     from_: End
     to: End
     stiffness: float
     length: float
     damping: float = 0.0
+    force: Expression | None = None
     type: Literal["spring"] = "spring"
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s."""
+    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s; or its torque [N m]."""
 
     joint: str
     stiffness: float
     angle: float
     damping: float = 0.0
+    torque: Expression | None = None
     type: Literal["turn_spring"] = "turn_spring"
 
 
@@ -237,25 +253,62 @@ class Distributed(NamedTuple):
     type: Literal["distributed"] = "distributed"
 
 
+@record
+class Elastic(Generic[V]):
+    """Three springs and dampers of a bushing, of its shift or of its turn, along its axes.
+
+    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; given: what it exerts beside, [N] or [N m]: a preload, or
+    in place of a stiffness what hangs on the deflection.
+    """
+
+    stiffness: V
+    damping: V
+    given: Vector
+
+
+class Bushing(NamedTuple):
+    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: those in that of `to`."""
+
+    from_: End
+    to: End
+    shift: Elastic[Vec]
+    turn: Elastic[Vec]
+    rotation: Matrix
+    to_rotation: Matrix
+    type: Literal["bushing"] = "bushing"
+
+
+class Motor(NamedTuple):
+    """A motor in a joint: torque ON `to` [N m], opposite on `from`, by the joint's rate."""
+
+    joint: str
+    value: Expression
+    type: Literal["motor"] = "motor"
+
+
 class Damper(NamedTuple):
-    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder)."""
+    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder).
+
+    Or its torque [N m] or force [N] ON `to`, by the joint's rate.
+    """
 
     joint: str
     coefficient: float
     sliding: float | None = None
+    law: Expression | None = None
     type: Literal["damper"] = "damper"
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed).
+    """Coulomb friction in a joint, torque [N m] or force [N], in time, times tanh(rate/speed).
 
     Or coefficient: of what presses, the joint's own force; about a pin at a radius [m]. length [m]: of a guide at whose
     two ends it presses.
     """
 
     joint: str
-    torque: float | None
-    force: float | None
+    torque: Expression | None
+    force: Expression | None
     speed: float
     coefficient: float | None = None
     radius: float | None = None
@@ -263,7 +316,9 @@ class Friction(NamedTuple):
     type: Literal["friction"] = "friction"
 
 
-Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
+Force = (
+    PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction | Motor | Bushing
+)
 
 
 @record
@@ -476,6 +531,7 @@ class Spec(NamedTuple):
     locations: Mapping[str, SourceLocation] = NOWHERE
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
+    couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

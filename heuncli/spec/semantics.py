@@ -135,7 +135,9 @@ def held_of(latch: f.LatchEntry, document: f.Document) -> Held | None:
     if stop is not None:
         found = limits_of(stop)
         asked = {"lower": (-1,), "upper": (1,), None: (-1, 1)}[latch.limit]
-        return Held(stop.joint, found[0], None, tuple(s for s in asked if found[1][s > 0] is not None)) if found else None
+        return (
+            Held(stop.joint, found[0], None, tuple(s for s in asked if found[1][s > 0] is not None)) if found else None
+        )
     joint = document.joints.get(latch.joint or "")
     kind = TYPES.get(joint.type) if joint is not None else None
     if latch.joint is None or kind is None or len(fit := limitable(kind)) != 1:

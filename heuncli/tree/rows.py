@@ -55,6 +55,23 @@ class FreedomRow:
     body: int
     program: Program
     direction: Array
+    path: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    reach: float = 0.0
+    slope: float = 0.0
+    bend: float = 0.0
+
+
+@record
+class PieceRow:
+    """A piece of a path."""
+
+    begin: float
+    c0: Array
+    c1: Array
+    c2: Array
+    c3: Array
 
 
 @record
@@ -87,6 +104,10 @@ class LoadRow:
     row: int = 0
     row_count: int = 0
     reach: float = 0.0
+    frame: Sequence[float] = (0.0,) * 9
+    to_frame: Sequence[float] = (0.0,) * 9
+    stiffnesses: Vector = ZERO
+    resistances: Vector = ZERO
 
 
 @record
@@ -111,6 +132,14 @@ class ClosureRow:
     ratio: float = 0.0
     freedom_b: int = 0
     ratio_b: float = 0.0
+    lift: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    swings: int = 0
+    faced: int = 0
+    radius: float = 0.0
+    pivot: Vector = ZERO
+    h: Vector = ZERO
 
 
 @record
@@ -152,12 +181,15 @@ class CounterRow:
 class VariableRow:
     """A coordinate that expressions use, or a point's place along a direction; of the time, which is neither, zero.
 
+    Or a part of what a load acts between; load: its row.
     q: the point from its body's joint point, its axes; direction: world axes.
     """
 
     freedom: int = 0
     is_rate: int = 0
     is_point: int = 0
+    load: int = 0
+    part: int = 0
     body: int = 0
     q: Vector = ZERO
     direction: Vector = ZERO
@@ -200,6 +232,7 @@ Row = (
     | ClosurePlaces
     | ContactRow
     | CounterRow
+    | PieceRow
     | VariableRow
     | WatchRow
     | GroupRow

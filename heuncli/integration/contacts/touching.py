@@ -53,7 +53,9 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
         if closed[i] or contact.row == event or gap <= near:
             found.append(i)
     own = [layout.contacts[i] for i in found]
-    loads = np.array([unit_load(layout, bodies, rows, contact, -contact.sense) for contact in own]).reshape(len(own), len(bodies), 6)
+    loads = np.array([unit_load(layout, bodies, rows, contact, -contact.sense) for contact in own]).reshape(
+        len(own), len(bodies), 6
+    )
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
     reaches = tolerances.KERNEL["touching"] * terms

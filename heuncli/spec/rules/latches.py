@@ -21,7 +21,9 @@ def unknown_stop(draft: DraftDocument) -> Iterator[Violation]:
     stops = draft.names.entries["stops"]
     for name, latch in draft.document.latches.items():
         if latch.stop is not None and latch.stop not in stops:
-            yield Violation(("latches", name, "stop"), f"'{latch.stop}' is not a stop", did_you_mean(latch.stop, stops, "stops"))
+            yield Violation(
+                ("latches", name, "stop"), f"'{latch.stop}' is not a stop", did_you_mean(latch.stop, stops, "stops")
+            )
 
 
 @rule("latch-form")
@@ -67,12 +69,18 @@ def at_a_joint(draft: DraftDocument, name: str, latch: f.LatchEntry) -> Iterator
     given = [key for key in VALUES if getattr(latch, key) is not None]
     if len(fit) != 1:
         has = f"a {kind.name} has {' and '.join(fit)}" if fit else f"a {kind.name} has no coordinate"
-        hint = f"a stop limits the one that is meant, and the latch names it: {name}: {{stop: NAME}}" if fit else "a pin, slide or rod has one"
+        hint = (
+            f"a stop limits the one that is meant, and the latch names it: {name}: {{stop: NAME}}"
+            if fit
+            else "a pin, slide or rod has one"
+        )
         yield Violation((*path, "joint"), f"{has}: a latch holds one", hint)
         return
     for key in given:
         if key not in fit:
-            yield Violation((*path, key), f"a {kind.name} has no {key} to be held", f"a {kind.name} has {fit[0]}", key=True)
+            yield Violation(
+                (*path, key), f"a {kind.name} has no {key} to be held", f"a {kind.name} has {fit[0]}", key=True
+            )
 
 
 @rule("latch-joint")

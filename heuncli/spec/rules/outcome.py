@@ -249,7 +249,8 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            return [*entries["forces"], *entries["drives"], *entries["stops"], *entries["latches"], *shared]
+            held = [*entries["stops"], *entries["latches"], *entries["couplings"]]
+            return [*entries["forces"], *entries["drives"], *held, *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
@@ -258,6 +259,10 @@ def named(word: str, names: Names) -> list[str]:
             return list(entries["sections"])
         case "STOP":
             return [*entries["stops"], *entries["latches"]]
+        case "COUPLING":
+            return list(entries["couplings"])
+        case "END":
+            return [*entries["bodies"], GROUND]
         case "NUMBER":
             return ["0", "1", "2"]
         case "FORCE":

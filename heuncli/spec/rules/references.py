@@ -21,7 +21,7 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, load in document.forces.items():
         if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, f.ActuatorEntry | f.SpringEntry):
+        elif isinstance(load, f.ActuatorEntry | f.SpringEntry | f.BushingEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, blow in document.impulses.items():

@@ -16,15 +16,16 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.actions import AppliedLoad, joint_actions, whole_joint_actions
+from heuncli.kinetostatics.actions import AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_block
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.momentum import Momenta, momenta
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import JointLoad, PairLoad
+from heuncli.mechanism.model import GROUND, Bushing, JointLoad, PairLoad
 from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
@@ -40,11 +41,18 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     recovered, states = recovery.recovered, recovery.states
     shown: dict[str, Any] = {}
     if "foundation" in wanted:
-        actions = [*recovery.applied, *joint_actions(recovery.joints)]
-        shown["foundation"] = foundation(mechanism, states, actions, recovery.setup.about)
+        shown["foundation"] = foundation(mechanism, states, recovery.standing, recovery.setup.about)
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
+        names = [body.name for body in mechanism.bodies]
+        shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
+        for own in recovery.couplings:
+            if own.coupling.given.type == "cam":
+                from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+
+                angle = pressure_angle(own, mechanism.joints, states)
+                shown["couplings"][own.coupling.name]["pressure_angle"] = angle
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
@@ -53,7 +61,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     for load in recovery.asked_joints if axes != "world" and "joints" in shown else ():
         put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
     if shown and recovery.decided is not None:
-        recovery.decided.show(states, shown, axes)
+        recovery.decided.show(states, shown, recovery.couplings, axes)
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
@@ -71,7 +79,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "sections" in wanted:
         shown["sections"] = sections(recovery, SHARES in wanted)
     if "forces" in wanted:
-        shown["forces"] = forces(recovery.loads)
+        shown["forces"] = forces(recovery.loads, states)
     return shown
 
 
@@ -135,7 +143,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     # only scenes with sections load it
     from heuncli.kinetostatics.sections import attachments, section
 
-    actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
+    actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
     for asked in recovery.setup.cuts:
         on = attachments(asked.body, states, actions)
         cuts = asked.laid_for(on)
@@ -143,7 +151,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
         if stress is not None:
             from heuncli.redundancy.open_components import names_in_section, open_in_section
 
-            is_open = open_in_section(cuts, states, recovery.joints, stress)
+            is_open = open_in_section(cuts, states, recovery.joints, recovery.couplings, stress)
         own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
         block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
         if by_cause:
@@ -153,7 +161,18 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     return block
 
 
-def forces(loads: Sequence[AppliedLoad]) -> dict[str, ForceBlock]:
+def bushing(load: Bushing, applied: AppliedLoad, states: BodyStates) -> ForceBlock:
+    """Shift and turn of a bushing, and what it exerts on `to`, in its own axes, which stand in `from`."""
+    assert applied.strain is not None
+    shift, turn = applied.strain[:, 0], applied.strain[:, 1]
+    R = np.eye(3) if load.a == GROUND else states.R[:, load.a]
+    force, moment = (own @ load.frame for own in (
+        (applied.action.force[:, None] @ R)[:, 0], (applied.action.moment[:, None] @ R)[:, 0]
+    ))  # fmt: skip
+    return {"shift": shift, "turn": turn, "force": force, "moment": moment}
+
+
+def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
     """Values, lengths, rates and powers of the applied loads."""
     block: dict[str, ForceBlock] = {}
     for applied in loads:
@@ -162,6 +181,8 @@ def forces(loads: Sequence[AppliedLoad]) -> dict[str, ForceBlock]:
             own["length"] = applied.length
         if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
             own["angle"] = applied.length
+        if isinstance(applied.load, Bushing):
+            own |= bushing(applied.load, applied, states)
         if isinstance(applied.load, PairLoad | JointLoad):
             own["rate"] = applied.rate
         own["power"] = applied.power

@@ -107,12 +107,13 @@ def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
     own = {f"drives.{name}": drive for name, drive in spec.drives.items() if name in spec.forces}
     stops = {**spec.stops, **spec.latches}
-    elements = {**spec.drives, **spec.forces, **stops, **own}
+    elements = {**spec.drives, **spec.forces, **stops, **spec.couplings, **own}
     return {
         ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
         ("foundation",): dict.fromkeys(PARTS),
         ("foundation", "supports"): dict(spec.joints), ("foundation", "elements"): elements,
-        ("joints",): dict(spec.joints), ("stops",): dict(stops), ("sections",): dict(spec.sections),
+        ("joints",): dict(spec.joints), ("stops",): dict(stops),
+        ("couplings",): dict(spec.couplings), ("sections",): dict(spec.sections),
         ("forces",): dict(spec.forces), ("system_vector", "bodies"): bodies,
     }  # fmt: skip
 
