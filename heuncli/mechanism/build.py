@@ -68,10 +68,9 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
+    stops = tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values()))
     if planar:
-        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
-            loads, values, joints
-        )
+        told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
@@ -91,7 +90,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
+        stops=stops,
         conditions=conditions,
         points=points,
         couplings=couplings,

@@ -133,12 +133,13 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyS
         if load.joint.name in supports:
             open_support(supports[load.joint.name], share, stress)
         drive = load.joint.drive
-        for stop in (own.stop for own in load.stops):
+        for own in load.stops:
+            stop, beside = own.stop, free * own.unit.any(axis=1)[:, None, None]  # others of the joint may be touched
             if stop.name in elements:
-                open_support(elements[stop.name], of_quantity(free, stop.quantity), stress)
+                open_support(elements[stop.name], of_quantity(beside, stop.quantity), stress)
             if stop.name in shown.get("stops", {}):
                 block = shown["stops"][stop.name]
-                is_open = open_along(stop.quantity, free, stress)
+                is_open = open_along(stop.quantity, beside, stress)
                 block |= {name: opened(value, is_open) for name, value in block.items()}
         if drive is not None and load.drive is not None and load.axis is not None:
             key = f"drives.{drive.name}" if f"drives.{drive.name}" in elements else drive.name

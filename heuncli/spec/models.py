@@ -380,6 +380,11 @@ class Stop(Generic[Ref]):
     restitution: float = 0.0
     latch: Latch | None = None
 
+    @property
+    def path(self) -> str:
+        """Where it stands in a spec."""
+        return f"{'stops' if self.latch is None else 'latches'}.{self.name}"
+
 
 class Properties(NamedTuple):
     """Of a section's shape, for stresses: SI values by name.

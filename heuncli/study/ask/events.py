@@ -215,17 +215,21 @@ def told(study: Study) -> Study:
     """The study with its events in the results, and a sentence on how it ended."""
     results, conditions = study.results, study.spec.analysis.conditions
     if EVENTS in study.options.reports:
-        results = changed(results, events={c.name: block(c, study.changes[c.name]) for c in conditions})
+        events = {c.name: block(c.text, study.changes[c.name]) for c in conditions}
+        for name, stop in study.spec.latches.items():
+            if name in study.changes:
+                events[name] = block(f"{stop.joint}.{stop.quantity} held", study.changes[name])
+        results = changed(results, events=events)
     last = next((c for c in conditions if c.ends), None)
     if last is not None:
         results = ending(results, last, study.changes[last.name])
     return replace(study, results=results)
 
 
-def block(condition: WatchedCondition, changes: Changes) -> Block:
-    """One event as it stands in the results."""
+def block(condition: str, changes: Changes) -> Block:
+    """One event as it stands in the results; condition: in words."""
     return {
-        "condition": condition.text, "begins": changes.begins, "time": changes.times, "error": changes.error,
+        "condition": condition, "begins": changes.begins, "time": changes.times, "error": changes.error,
         "to": changes.to.tolist(),
     }  # fmt: skip
 
