@@ -56,7 +56,7 @@ OTHER_NAMES = {  # what people write who come from elsewhere
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
     "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
-LOADS = SHARED | {"stops"}  # blocks of the results that are found from the motion
+LOADS = SHARED | {"stops", "couplings"}  # blocks of the results that are found from the motion
 REACTIONS = frozenset(
     row.path.split(".")[2]
     for row in ROWS

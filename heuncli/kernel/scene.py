@@ -204,12 +204,14 @@ class Closure(Record):
 class Contact(Record):
     """A one-sided closure row: its margin, sense * gap while it is open, sense * multiplier while closed, is not > 0.
 
-    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves.
+    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves. The
+    row of a latch holds both ways while it is closed, by a place that is told with that: it has no margin.
     """
 
     row: int
-    sense: int  # 1: an upper limit, a rope; -1: a lower limit
+    sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    held_at: int  # of a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
@@ -471,9 +473,9 @@ class Instants(Value):
     afresh: bool  # the closure rows are chosen anew at each
     held: bool  # `branches` are given
     causes: bool  # a column a cause is answered, too
-    opening: int  # numbers of `holding` a state; 0: the contacts stay as they are
+    opening: int  # numbers of `holding` a state (take_holding); 0: the contacts stay as they are
     branches: list[float]  # that expressions hold
-    holding: list[float]  # which contacts are closed, and how
+    holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]
     states: list[float]  # settled in place
     bodies: list[float]  # the answers, a kind each (tree/tables.py)

@@ -9,6 +9,7 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
@@ -64,13 +65,22 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
+    conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
     if planar:
-        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
+        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
+            loads, values, joints
+        )
         seen = {point.body for point in points.values()}
+        told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
+    couplings: tuple[Coupling, ...] = ()
+    if spec.couplings:
+        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+
+        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -79,11 +89,10 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(
-            Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
-        ),
+        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
         conditions=conditions,
         points=points,
+        couplings=couplings,
     )
 
 
@@ -148,6 +157,11 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     )  # fmt: skip
 
 
+def coupled(spec: m.Spec) -> set[str]:
+    """The joints whose coordinates are coupled."""
+    return {term.joint for coupling in spec.couplings.values() for term in coupling.terms}
+
+
 def coordinates_used(
     loads: tuple[Load, ...], values: Sequence[Expression], joints: dict[str, tuple[int, Kind]]
 ) -> set[int]:
@@ -199,7 +213,9 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case m.Bushing():
             return bushing(name, f, index)
@@ -254,3 +270,8 @@ def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     return Blow(
         b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
     )  # fmt: skip
+
+
+def stop(s: m.Stop[str], joint: int) -> Stop:
+    """A stop or a latch of a joint's coordinate."""
+    return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

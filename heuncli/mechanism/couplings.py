@@ -28,11 +28,12 @@ class Coordinate(NamedTuple):
 
 
 @record
-class Part:
+class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
-    its gap is counted by, of a turn one, of a mesh one or two.
+    its gap is counted by, of a turn one, of a mesh one or two. apart: of a mesh the force that pushes b out of a beside
+    it, for a multiplier of 1 or of -1: it does no work, whatever moves, and stands in the axes of c, too.
     """
 
     kind: Literal["guide", "dot", "rod", "turn", "mesh"]
@@ -45,6 +46,7 @@ class Part:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    apart: Array | tuple[float, float, float] = NOWHERE
 
     @property
     def is_couple(self) -> bool:
@@ -74,7 +76,7 @@ class CoupledRow:
     restitution it opens and closes, without the run ends where it would push.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[CouplingPart, ...]
     length: float | None = None
     weight: float = 1.0
     tension_only: bool = False

@@ -113,7 +113,7 @@ def labels_of(spec: Spec) -> Labels:
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
     stops = {
         name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
-        for name, stop in spec.stops.items()
+        for name, stop in {**spec.stops, **spec.latches}.items()
     }
     return Labels(joints, forces, sections, stops, named)
 

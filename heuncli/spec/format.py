@@ -69,6 +69,7 @@ from heuncli.spec.fields import (
     Velocity,
     VelocityInTime,
 )
+from heuncli.spec.format_couplings import COUPLINGS, CouplingEntry
 from heuncli.spec.format_shapes import Orientation, ShapeEntry
 from heuncli.spec.words import SEVERAL
 
@@ -463,6 +464,17 @@ class StopEntry(Entry):
     friction: Number | None = None
 
 
+class LatchEntry(Entry):
+    stop: str | None = None
+    limit: Literal["lower", "upper"] | None = None
+    joint: str | None = None
+    angle: Angle | None = None
+    travel: Length | None = None
+    when: StrikeInTime | None = None
+    release: StrikeInTime | None = None
+    every: Switch = False
+
+
 class CircleEntry(Entry):
     radius: Length
 
@@ -605,7 +617,7 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "sections": SectionEntry, "cases": CaseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -622,6 +634,8 @@ class Document(NamedTuple):
     forces: dict[str, LoadEntry]
     impulses: dict[str, ImpulseEntry]
     stops: dict[str, StopEntry]
+    couplings: dict[str, CouplingEntry]
+    latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
     cases: dict[str, CaseEntry]
     analysis: AnalysisEntry

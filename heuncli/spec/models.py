@@ -12,12 +12,16 @@ import math
 from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
+from heuncli.spec.couplings import Coupling
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -32,6 +36,7 @@ Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
+NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
 
 
 class End(NamedTuple):
@@ -49,9 +54,12 @@ class Ground(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of a body: one of mass, density, line_density is given; of the measures those its type has."""
+    """A part of a body: one of mass, density, line_density is given; of the measures those its type has.
 
-    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point"]
+    A mesh stands in the units and axes of its file: a corner x is at + rotation (scale x) [m].
+    """
+
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
     mass: float | None = None
     density: float | None = None
     line_density: float | None = None
@@ -64,6 +72,8 @@ class Shape(NamedTuple):
     radius: float | None = None
     inner_radius: float | None = None
     to_radius: float | None = None
+    scale: float | None = None
+    mesh: TriangleMesh | None = None
 
 
 @record
@@ -328,8 +338,35 @@ class Blow(Generic[Ref, V]):
 
 
 @record
+class Latch:
+    """What of a latch its stop does not tell: where it catches, from when on, and when it lets go.
+
+    at: the coordinate at which it catches [rad] or [m]; stop: else at the limits of that stop which are told by their
+    sides (-1 the lower, 1 the upper); neither: wherever the coordinate is. when: only while this is true, None: always;
+    release: lets go, and does not catch, while this is true, None: never; every: again, after it was released.
+    passes: that the coordinate is beyond `at`, so that a motion through it is met.
+    """
+
+    at: float | None
+    stop: str | None
+    sides: tuple[int, ...]
+    when: Condition | None
+    release: Condition | None
+    passes: Condition | None
+    every: bool
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What it hangs on."""
+        return tuple(c for c in (self.when, self.release, self.passes) if c is not None)
+
+
+@record
 class Stop(Generic[Ref]):
-    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
+    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1.
+
+    latch: what holds the coordinate both ways, without limits of its own.
+    """
 
     name: str
     joint: Ref
@@ -337,6 +374,7 @@ class Stop(Generic[Ref]):
     low: float | None
     high: float | None
     restitution: float = 0.0
+    latch: Latch | None = None
 
 
 class Properties(NamedTuple):
@@ -473,6 +511,7 @@ class Spec(NamedTuple):
     forces: Mapping[str, Force]
     impulses: Mapping[str, Blow[str, Vec]]
     stops: Mapping[str, Stop[str]]
+    latches: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
     tables: Mapping[str, TableFunction]
     analysis: Analysis
@@ -483,6 +522,7 @@ class Spec(NamedTuple):
     locations: Mapping[str, SourceLocation] = NOWHERE
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
+    couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

@@ -6,20 +6,37 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.composed import product, renamed, total, with_factor, within
+from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import LOADS, OWN, Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m
+from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
+from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
+from heuncli.spec.resolve_couplings import meant
+from heuncli.spec.semantics import (
+    body_axes,
+    drive_of,
+    end_of,
+    held_of,
+    instants_of,
+    limits_of,
+    point_in,
+    tensor,
+    type_of,
+)
 from heuncli.spec.turns import IDENTITY
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 DEFAULT_TOLERANCE = 1e-9
 
@@ -35,12 +52,13 @@ class Meaning:
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
     curves: Mapping[int, m.Curve]
+    surfaces: Mapping[str, TriangleMesh]
     case: str | None
 
 
 def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
     """The scene that a document without errors means; by: what follows the references, one of them by default."""
-    r = by or Resolver(document, meaning.locations, meaning.curves)
+    r = by or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
     return m.Spec(
         title=titled(document, meaning.case),
         path=meaning.path,
@@ -55,6 +73,8 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
+        couplings=r.entries("couplings", "coupling"),
+        latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
         analysis=r.single("analysis"),
@@ -80,9 +100,13 @@ class Resolver:
     """Follows the references of one document."""
 
     def __init__(
-        self, document: f.Document, locations: Mapping[str, SourceLocation], curves: Mapping[int, m.Curve]
+        self,
+        document: f.Document,
+        locations: Mapping[str, SourceLocation],
+        curves: Mapping[int, m.Curve],
+        surfaces: Mapping[str, TriangleMesh],
     ) -> None:
-        self.document, self.locations, self.curves = document, locations, curves
+        self.document, self.locations, self.curves, self.surfaces = document, locations, curves, surfaces
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean; by: the method that tells it of one."""
@@ -137,9 +161,14 @@ class Resolver:
             "to_radius",
         )
         rotation = None
-        if isinstance(shape, fs.BoxShape):
+        if isinstance(shape, fs.BoxShape | fs.MeshShape):
             rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
-        return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        meant = m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        if not isinstance(shape, fs.MeshShape):
+            return meant
+        return meant._replace(
+            at=shape.at or m.ZERO, scale=1.0 if shape.scale is None else shape.scale, mesh=self.surfaces[shape.file]
+        )
 
     def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
         return m.MassProperties(piece.mass, piece.center, tensor(piece)) if piece is not None else None
@@ -338,11 +367,30 @@ class Resolver:
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
 
+    def coupling(self, name: str, given: CouplingEntry) -> Coupling:
+        return meant(self, name, given)
+
     def stop(self, name: str, given: f.StopEntry) -> m.Stop[str]:
         found = limits_of(given)
         assert found is not None
         quantity, (low, high) = found
         return m.Stop(name, given.joint, quantity, low, high, given.restitution)
+
+    def latch(self, name: str, given: f.LatchEntry) -> m.Stop[str]:
+        held = held_of(given, self.document)
+        assert held is not None
+        passes = None
+        if held.at is not None:
+            beyond = f"{held.joint}.{held.quantity} > {held.at!r}"
+            kind = self.document.joints[held.joint].type
+            passes = compile_expression(beyond, Scope(joints={held.joint: kind}, in_time=True))
+        path = f"latches.{name}"
+        when, release, crossed = (
+            m.Condition(path, value.source.strip(), False, self.placed(value, f"{path}.{key}")) if value else None
+            for key, value in (("when", given.when), ("release", given.release), ("angle", passes))
+        )
+        latch = m.Latch(held.at, given.stop, held.sides, when, release, crossed, given.every)
+        return m.Stop(name, held.joint, held.quantity, None, None, 0.0, latch)
 
 
 def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:

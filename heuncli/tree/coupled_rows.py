@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
+from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
+from heuncli.mechanism.model import Assembly
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
+from heuncli.tree.starts import pose
 
 KINDS = {"guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH}
 
@@ -14,7 +17,9 @@ InTree = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
 
 
-def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]) -> ClosureRow:
+def part_row(
+    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+) -> ClosureRow:
     """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
@@ -36,7 +41,23 @@ def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[
     )
 
 
-def sum_row(row: CoupledRow, first: int, size: float) -> ClosureRow:
+def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    """The sum of the parts' gaps at the start; coordinates: of the joints there."""
+    return sum(part.factor * _gap(part, start, coordinates) for part in row.parts)
+
+
+def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    if part.coordinates:
+        return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
+    xa, Ra, _, _ = pose(start, part.a)
+    xb, Rb, _, _ = pose(start, part.b)
+    D, e = xb + Rb @ part.q - xa - Ra @ part.p, Ra @ part.e
+    if part.kind == "rod":
+        return math.sqrt(float(D @ D))
+    return float(e @ (Rb @ part.g if part.kind == "dot" else D))
+
+
+def sum_row(row: CoupledRow, length: float, first: int, size: float) -> ClosureRow:
     """The row that is the sum of its parts, from the first of them on; its ends are those of that one."""
     return ClosureRow(
         kind=kernel.SUM,
@@ -45,7 +66,7 @@ def sum_row(row: CoupledRow, first: int, size: float) -> ClosureRow:
         p=ZERO,
         q=ZERO,
         weight=row.weight or size,
-        length=row.length or 0.0,
+        length=length,
         part=first,
         part_count=len(row.parts),
     )

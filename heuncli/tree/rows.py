@@ -139,6 +139,7 @@ class ContactRow:
     row: int
     sense: int
     opens: int
+    held_at: int = 0
 
 
 @record

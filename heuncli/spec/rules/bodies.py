@@ -20,7 +20,7 @@ LEAST = {
     "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
     "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
     "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
-    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "scale": "the length of one unit of the file: 1 mm", "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
 
@@ -66,7 +66,7 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield from positive((*path, "piece"), body.piece, "mass")
         for i, shape in enumerate(body.shapes or []):
             at = (*path, "shapes", i)
-            yield from positive(at, shape, "mass", "density", "line_density")
+            yield from positive(at, shape, "mass", "density", "line_density", "scale")
             if not isinstance(shape, fs.ConeShape):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
@@ -267,7 +267,7 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
         if body.near is not None and body.near.orientation is not None:
             yield ("bodies", name, "near", "orientation"), body.near.orientation
         for i, shape in enumerate(body.shapes or []):
-            if isinstance(shape, fs.BoxShape) and shape.orientation is not None:
+            if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
 
 

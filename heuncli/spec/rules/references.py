@@ -145,7 +145,9 @@ def unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
     """Joints exist."""
     joints = draft.names.entries["joints"]
     document = draft.document
-    naming = {"drives": document.drives, "forces": document.forces, "stops": document.stops}
+    naming = {
+        "drives": document.drives, "forces": document.forces, "stops": document.stops, "latches": document.latches,
+    }  # fmt: skip
     for block, entries in naming.items():
         for name, entry in entries.items():  # type: ignore[attr-defined]
             joint = getattr(entry, "joint", None)
