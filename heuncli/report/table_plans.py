@@ -150,7 +150,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment"),
+    ("force", "moment", "contact", "pressure_angle"),
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(
