@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.oracle.transforms import turned
-from tests.oracle.turns import about, random_rotation
+from tests.oracle.turns import about, attitude, random_rotation
 from tests.shared.scenes import near, solved
 
 ENGINE = {
@@ -74,12 +74,12 @@ def test_alike_in_all_directions_it_has_no_axes() -> None:
 
 
 def test_the_world_turned() -> None:
-    """With `from` on the ground the axes of the bushing turn with it."""
+    """With it and the bodies' axes a bushing's axes turn; what it tells stands in its own."""
     R = random_rotation(np.random.default_rng(3))
     scene = two_bodies(**DAMPED, **PRELOADED)
     other = turned(scene, R)
-    other["forces"]["mount"] = {**other["forces"]["mount"], "orientation": {"matrix": R.tolist()},
-                                "to_orientation": {"matrix": np.eye(3).tolist()}}  # fmt: skip
+    for load in other["forces"].values():
+        load["orientation"] = {"matrix": (R @ attitude(load.get("orientation"))).tolist()}
     wanted, found = solved(scene), solved(other)
     for name in ("engine", "rotor"):
         near(found.bodies[name]["position"], wanted.bodies[name]["position"] @ R.T, 1.0, 1e-9)
