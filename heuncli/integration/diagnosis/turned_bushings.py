@@ -36,8 +36,8 @@ def half_turned(name: str, t: float) -> Problem:
 def at_half_turn(mechanism: Mechanism, recovered: Recovered, instant: int) -> list[Problem]:
     """The problems of bushings that are so far turned at one of the instants, or about to be."""
     loads, t = recovered.loads[instant], float(recovered.times[instant])
-    own = turning(mechanism)
-    return [half_turned(b.name, t) for b, row in own if loads["span"][row] >= tolerances.NEARLY_HALF_A_TURN]
+    own, nearly = turning(mechanism), np.pi - tolerances.NEARLY_TURNED_OVER
+    return [half_turned(b.name, t) for b, row in own if loads["span"][row] >= nearly]
 
 
 def turns_over(runner: Runner, run: Trajectory, horizon: float | None) -> Problem | None:
