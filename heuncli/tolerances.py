@@ -74,10 +74,13 @@ ORDERS_SETTLED = (
 # -- coordinates of Lagrange's equations
 TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
-# [rad] of what a bushing bears: at half a turn its moment jumps to the other side, and which side it is on is known to
-# the error of a run, which is a thousandth of this where nobody asks for more
-LARGEST_TURN = 3.141592653589793 - 1e-6
 HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
+
+# -- bushings: where they come to half a turn
+# [rad] short of it: there the moment jumps to the other side, and which side it is on is known to the error of a run,
+# which is a thousandth of this where nobody asks for more
+TURNED_OVER = 1e-6
+NEARLY_TURNED_OVER = 1e-3  # the same, where a run could not go on: so near to that it did not for that
 
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed

@@ -205,8 +205,11 @@ PLANS = (
         "forces",
         "forces",
         "force",
-        ("value", "length", "angle", "rate", "power"),
-        lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
+        ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+        lambda results, labels: (
+            "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
+            + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
+        ),
         _force_note,
     ),
     ENERGY,

@@ -270,6 +270,10 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
         for i, shape in enumerate(body.shapes or []):
             if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
+    for name, load in draft.document.forces.items():
+        for key in ("orientation", "to_orientation") if isinstance(load, f.BushingEntry) else ():
+            if getattr(load, key) is not None:
+                yield ("forces", name, key), getattr(load, key)
 
 
 @rule("piece-form")
