@@ -90,9 +90,7 @@ def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyth
     row.gamma = -lift.bend.x * u * u - dot(row.f, sub(own, apart))
 
 
-def turning(
-    scene: cython.pointer[Scene], body: cython.int, c: cython.int, pivot: Vec3, spin: Vec3, Q: Vec3
-) -> Vec3:
+def turning(scene: cython.pointer[Scene], body: cython.int, c: cython.int, pivot: Vec3, spin: Vec3, Q: Vec3) -> Vec3:
     """Of a body that turns on the carrier by `spin`: cen_c(P) - cen(P) + (omega_c x spin) x (Q - P)."""
     on: Carried = carried(scene, c, pivot)
     found: Vec3 = sub(on.centripetal, carried(scene, body, pivot).centripetal)

@@ -76,7 +76,9 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind != MESH and row.kind != CAM and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+    if (
+        scene.flat and row.kind != MESH and row.kind != CAM and row.e.z == 0.0 and row.g.z == 0.0
+    ):  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)

@@ -17,7 +17,19 @@ if not cython.compiled:
     from heuncli.kernel.cams import cam_along
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import (
+        CAM,
+        DOT,
+        GUIDE,
+        MESH,
+        SUM,
+        TURN,
+        Closure,
+        LoadTangent,
+        MotionTangent,
+        RowTangent,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along
@@ -46,7 +58,11 @@ def condition_loads_along(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], force: cython.double
 ) -> cython.double:
     """What a condition of two bodies demands of the answer; its load, as it changes, on them."""
-    if is_still(scene, row.a) and is_still(scene, row.b) and is_still(scene, row.c if row.kind == MESH or row.kind == CAM else -1):
+    if (
+        is_still(scene, row.a)
+        and is_still(scene, row.b)
+        and is_still(scene, row.c if row.kind == MESH or row.kind == CAM else -1)
+    ):
         return 0.0
     d: RowTangent = condition_along(scene, row)
     load: LoadTangent = LoadTangent(d.Q, scaled(force, d.f), scaled(force, d.m))

@@ -13,7 +13,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, rotate, scaled, sub, transform
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
     from heuncli.kernel.scene import (
         SHIFT,
         TURN_IN_BODY,

@@ -1,7 +1,7 @@
 """How steeply a cam presses.
 
-    cos a = 1 / |f| |w|        f . w = 1, w how fast the follower passes the place of contact, or its roller's centre,
-                               by a unit of its rate; a is the pressure angle
+cos a = 1 / |f| |w|        f . w = 1, w how fast the follower passes the place of contact, or its roller's centre,
+                           by a unit of its rate; a is the pressure angle
 """
 
 from __future__ import annotations

@@ -80,7 +80,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     if spec.couplings:
         from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
+        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -213,7 +213,9 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case m.Bushing():
             return bushing(name, f, index)

@@ -48,7 +48,10 @@ class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates: those
-    that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's.
+    that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's. apart: of a
+    mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work, whatever moves, and
+    stands in the axes of c, too. standing: of a mesh a force and a moment about p that are there besides, whatever the
+    multiplier, and do no work either.
     """
 
     kind: Literal["guide", "dot", "rod", "turn", "mesh", "cam"]
@@ -61,6 +64,8 @@ class CouplingPart:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    apart: Array | tuple[float, float, float] = NOWHERE
+    standing: tuple[Array | tuple[float, float, float], Array | tuple[float, float, float]] = (NOWHERE, NOWHERE)
     cam: CamShape | None = None
 
     @property

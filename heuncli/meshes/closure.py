@@ -139,7 +139,9 @@ def _is_inward(soup: Soup, number: Numbers, volumes: Array) -> bool:
     bad = [k for k, right in enumerate(wrong) if right == sign]
     if bad:
         where = ", ".join(f"{x:.6g}" for x in 0.5 * (low[bad[0]] + high[bad[0]]))
-        message = f"{len(bad)} of {len(volumes)} shells are turned inside out against where they lie, one about ({where})"
+        message = (
+            f"{len(bad)} of {len(volumes)} shells are turned inside out against where they lie, one about ({where})"
+        )
         hint = f"a hole's surface is turned into the hole, a solid within another counts twice; {OUTWARD}"
         raise Finding("mesh-orientation", message, hint)
     return bool(sign)

@@ -119,7 +119,9 @@ def list_of(element: Element) -> int:
 
 def broken_off(element: Element) -> Finding:
     """That a file ends too early."""
-    return refused(f"it breaks off: its head announces {element.count} of '{element.name}', there are fewer", SAVE_AGAIN)
+    return refused(
+        f"it breaks off: its head announces {element.count} of '{element.name}', there are fewer", SAVE_AGAIN
+    )
 
 
 class _Words:

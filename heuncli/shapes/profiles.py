@@ -109,7 +109,9 @@ def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurfac
         if parts[i] != 1:
             missing[i] = f"the outline of the mesh has {int(parts[i])} parts"
         elif not turned[i] <= tolerances.OUTLINE_PRINCIPAL:
-            missing[i] = f"e1 is no principal axis of the outline (as first_axis: [{_axis(I1[i], I2[i], I12[i], local)}] is)"
+            missing[i] = (
+                f"e1 is no principal axis of the outline (as first_axis: [{_axis(I1[i], I2[i], I12[i], local)}] is)"
+            )
         elif not lopsided[i] <= tolerances.OUTLINE_SYMMETRIC:
             missing[i] = "shear forces twist the outline, which is not the same turned by 180 degrees"
     return np.array([A, I1, I2, J, c1, c2]), missing
@@ -122,7 +124,9 @@ def counted(edges: Edges2, length: Array, k: int, near: float) -> tuple[Indices,
     around = np.bincount(edges.line, length)
     plane = np.zeros(len(areas), dtype=np.intp)
     plane[edges.line] = edges.plane
-    return np.bincount(plane[areas > near * around], minlength=k), np.bincount(plane[areas < -near * around], minlength=k)
+    return np.bincount(plane[areas > near * around], minlength=k), np.bincount(
+        plane[areas < -near * around], minlength=k
+    )
 
 
 def _axis(I1: float, I2: float, I12: float, local: LocalSurface) -> str:

@@ -23,7 +23,6 @@ from heuncli.spec.entries import Before, Entry, OneOf, Tag
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
 
-
 A_TABLE = "such as tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
 HELD = 1  # a table's kind (expressions/programs.py): beyond its ends it stays
 

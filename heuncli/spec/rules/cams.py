@@ -40,7 +40,9 @@ def cam_joints(draft: DraftDocument) -> Iterator[Violation]:
             continue
         if shaft.from_.body != follower.from_.body:
             message = f"{cam.of[0]} is from {shaft.from_.body}, but {cam.of[1]} from {follower.from_.body}"
-            yield Violation(path, message, "both joints are from the body that carries disc and follower: turn one round")
+            yield Violation(
+                path, message, "both joints are from the body that carries disc and follower: turn one round"
+            )
         elif shaft.to.body == follower.to.body:
             yield Violation(path, f"disc and follower are both {shaft.to.body}", "a cam moves another body")
         elif not stands(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
