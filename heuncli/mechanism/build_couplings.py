@@ -115,7 +115,7 @@ def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
     coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
     part = CouplingPart(
         "cam", shaft.b, follower.b, shaft.p, np.array(given.at), shaft.axis, follower.axis,
-        1.0 if given.both else -1.0, shaft.a, coordinates, shape,
+        1.0 if given.both else -1.0, shaft.a, coordinates, cam=shape,
     )  # fmt: skip
     return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
 
