@@ -134,7 +134,7 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
-    ("joints", "curve"), ("keys", "sweep"),
+    ("keys", "sweep"),
 }  # fmt: skip
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),

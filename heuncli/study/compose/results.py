@@ -57,7 +57,7 @@ def compose(
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
         model=model_of(setup, history, recovery),
-        status=status(history) if rest is None else rest.status,
+        status=status(history, setup.scene.mechanism) if rest is None else rest.status,
         time=own.times,
         **own.shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
