@@ -16,11 +16,24 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import (
+        DOT,
+        GUIDE,
+        MESH,
+        SUM,
+        TOUCHES,
+        TURN,
+        Closure,
+        LoadTangent,
+        MotionTangent,
+        RowTangent,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
     from heuncli.kernel.tree import direction_of
 
@@ -80,6 +93,8 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
     """The same of a condition of two bodies."""
     if row.kind == MESH:
         return mesh_along(scene, row)
+    if row.kind >= TOUCHES:
+        return rolling_along(scene, row)
     Q: Vec3 = point_along(scene, row.b, row.q).x
     if row.kind == GUIDE:
         return guide_along(scene, row, Q)

@@ -32,10 +32,12 @@ class Part:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
-    its gap is counted by, of a turn one, of a mesh one or two.
+    its gap is counted by, of a turn one, of a mesh one or two. radius: of a wheel.
     """
 
-    kind: Literal["guide", "dot", "rod", "turn", "mesh"]
+    kind: Literal[
+        "guide", "dot", "rod", "turn", "mesh", "touches", "rolls", "rolls_aside", "rolls_ball"
+    ]  # fmt: skip
     a: int
     b: int
     p: Array | tuple[float, float, float] = NOWHERE
@@ -45,6 +47,12 @@ class Part:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    radius: float = 0.0
+
+    @property
+    def holds_speed(self) -> bool:
+        """Whether it holds a speed and no pose."""
+        return self.kind in ("rolls", "rolls_aside", "rolls_ball")
 
     @property
     def is_couple(self) -> bool:

@@ -8,7 +8,10 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 
-KINDS = {"guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH}
+KINDS = {
+    "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
+    "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE, "rolls_ball": kernel.ROLLS_BALL,
+}  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
@@ -29,6 +32,7 @@ def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[
         e=part.e,
         g=part.g,
         factor=part.factor,
+        length=part.radius,
         c=in_tree(part.c),
         ratio=ratio,
         freedom_b=freedom_b,
