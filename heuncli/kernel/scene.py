@@ -141,8 +141,8 @@ class Closure(Record):
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms.
-    TOUCHES, ROLLS, ROLLS_ASIDE, ROLLS_BALL: a wheel's on a plane (kernel/rolling.py); all but the first hold a speed, and
-    have no gap.
+    TOUCHES, ROLLS, ROLLS_ASIDE, ROLLS_BALL: a wheel's on a plane (kernel/rolling.py); all but the first hold a speed,
+    and have no gap.
     """
 
     kind: int
