@@ -137,6 +137,7 @@ class Results:
     foundation: Block = field(default_factory=dict)
     joints: dict[str, JointBlock] = field(default_factory=dict)
     stops: Block = field(default_factory=dict)
+    couplings: Block = field(default_factory=dict)
     sections: Block = field(default_factory=dict)
     forces: dict[str, ForceBlock] = field(default_factory=dict)
     energy: Block = field(default_factory=dict)

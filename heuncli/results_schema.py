@@ -186,6 +186,10 @@ ROWS: tuple[Quantity, ...] = (
         scalar("tension", "N")),
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING", "the load that the coupling carries", scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
+        vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
+    *at("couplings.COUPLING", OPEN, words("open")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
@@ -262,6 +266,7 @@ REPORT_OF = {
     "foundation": "foundation",
     "joints": "joints",
     "stops": "joints",
+    "couplings": "joints",
     "sections": "sections",
     "forces": "forces",
     "energy": "energy",
@@ -278,15 +283,16 @@ MAGNITUDES = frozenset(
 )
 AFTER_THE_RUN = frozenset({"certain_sums", "accuracy"})  # of numbers that no spec foretells
 ESTIMATES = {
-    "foundation": "foundation", "joints": "reactions", "stops": "reactions", "sections": "sections", "energy": "energy",
+    "foundation": "foundation", "joints": "reactions", "stops": "reactions",
+    "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 # of which estimate those errors are that have none of their own
 KIND_OF = {"forces": "reactions", "axis": "foundation"}
-NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
+NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
 # what a blow has besides its own quantities, as at one instant; of impulses no stresses, pressures, energies are told
-STRUCK = ("foundation", "joints", "stops", "sections", "certain_sums")
+STRUCK = ("foundation", "joints", "stops", "couplings", "sections", "certain_sums")
 UNSTRUCK = ("joints.JOINT.pressure", "sections.SECTION.stress.", "sections.SECTION.energy")
 
 Node: TypeAlias = "dict[str, Node | Quantity]"

@@ -16,7 +16,14 @@ import typer
 
 SPECS = (".yaml", ".yml")
 HOWS = ("max", "min", "abs", "first", "final", "at")
-OF_BLOCK = {"BODY": "bodies", "JOINT": "joints", "FORCE": "forces", "SECTION": "sections", "STOP": "stops"}
+OF_BLOCK = {
+    "BODY": "bodies",
+    "JOINT": "joints",
+    "FORCE": "forces",
+    "SECTION": "sections",
+    "STOP": "stops",
+    "COUPLING": "couplings",
+}
 SETTABLE = ("gravity", "space", "title")
 MOST = 400  # completions that are offered
 

@@ -37,7 +37,7 @@ class IntegratedScene:
 
     def rope(self, row: int) -> str:
         """The rope that a closure row of the smaller scene is."""
-        return self.layout.mechanism.joints[self.layout.rows[row]].name
+        return self.layout.mechanism.owner(self.layout.rows[row]).partition(".")[2]
 
 
 def itself(scene: Evaluator) -> IntegratedScene:

@@ -100,8 +100,8 @@ class Workspace:
         """Everything the sweep knows at given states: flat arrays `times`, `states`, which are settled in place.
 
         Into `bodies`, `freedoms`, `loads`, `rows`, `parts` goes what is told of each of these, into `whole` of an
-        instant: the gap over all rows, how many freedoms had no inertia behind them, the least pivot of the closures, and what of
-        all rows the accelerations do not meet. `branches`: those that expressions
+        instant: the gap over all rows, how many freedoms had no inertia behind them, the least pivot of the closures,
+        and what of all rows the accelerations do not meet. `branches`: those that expressions
         hold, as many numbers an instant; empty: as the states say; `holding`: the same of the contacts, which `hold`
         takes; empty: as they are. afresh: choose the closure rows at every instant anew. causes: a column a cause
         (columns.py) goes into `columns`.

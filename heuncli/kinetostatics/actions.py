@@ -51,7 +51,7 @@ class Action:
     or of the stop. spread: the parts of a distributed load, whose resultant the force and the moment are.
     """
 
-    kind: Literal["load", "joint", "drive", "stop"]
+    kind: Literal["load", "joint", "drive", "stop", "coupling"]
     name: str
     to: ActionEnd
     from_: ActionEnd | None

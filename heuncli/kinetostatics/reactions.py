@@ -152,6 +152,10 @@ class Answers(Protocol):
     def rows(self) -> Named:
         """multiplier (..., n_t, rows); f, m (n_t, rows, 3), closed (n_t, rows)."""
 
+    @property
+    def parts(self) -> Named:
+        """Of the rows that are sums: f, m, Q (n_t, parts, 3)."""
+
 
 def joint_loads(
     layout: Layout, recovered: Answers, states: BodyStates, only: Collection[str] | None = None

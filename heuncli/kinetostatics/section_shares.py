@@ -12,6 +12,7 @@ import numpy as np
 
 from heuncli.kinetostatics.actions import whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.couplings import coupling_actions
 from heuncli.kinetostatics.cuts import Cuts
 from heuncli.kinetostatics.sections import (
     ABOUT_CENTROID,
@@ -59,7 +60,8 @@ def section_shares(
 
 def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
     """What the piece's inertia and the joints on it make of every cause, (3, n_c, n_t, k)."""
-    joints = attachments(cuts.body, states, whole_joint_actions(shares.joints))
+    actions = [*whole_joint_actions(shares.joints), *coupling_actions(shares.couplings)]
+    joints = attachments(cuts.body, states, actions)
     return piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
 
 

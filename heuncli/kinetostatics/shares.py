@@ -21,6 +21,7 @@ import numpy as np
 from heuncli.integration.evaluator import CAUSES, Recovered
 from heuncli.kinetostatics.actions import Action, joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads
 from heuncli.kinetostatics.foundation import on_ground
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.model import Mechanism
@@ -40,6 +41,7 @@ class Column:
     bodies: dict[str, Array]
     freedoms: dict[str, Array]
     rows: dict[str, Array]
+    parts: dict[str, Array]
 
 
 @record
@@ -53,6 +55,7 @@ class Shares:
     causes: tuple[str, ...]
     column: Column
     joints: list[JointLoads]
+    couplings: list[CouplingLoads]
     applied: list[Action]
 
     def place(self, cause: str) -> int:
@@ -98,7 +101,8 @@ def shares_of(
     live = {name: places for name, places in members.items() if name in acting or busy[list(places)].any()}
     live = live or dict([*members.items()][-1:])
     column = column_of(recovered, recovered.causes, live)
-    return Shares(tuple(members), tuple(live), column, joint_loads(layout, column, states), own)
+    joints, couplings = joint_loads(layout, column, states), coupling_loads(layout, column)
+    return Shares(tuple(members), tuple(live), column, joints, couplings, own)
 
 
 def not_zero(columns: Columns) -> Mask:
@@ -125,7 +129,8 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
 
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
     rows = {name: recovered.rows[name] for name in ("f", "m", "closed")} | {"multiplier": by_cause(columns.multipliers)}
-    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows)
+    parts = {name: recovered.parts[name] for name in ("f", "m", "Q")}
+    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, parts)
 
 
 def joint_shares(shares: Shares, load: JointLoads) -> Block:
@@ -146,7 +151,8 @@ def foundation_shares(
     force, moment = np.zeros((2, n_c, n_t, 3))
     parts: dict[tuple[str, ...], Block] = {}
     inner = [action for action in shares.applied if action.from_ is not None]
-    for keys, on in on_ground([*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]).items():
+    standing = [*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]
+    for keys, on in on_ground([*standing, *coupling_actions(shares.couplings)]).items():
         force, moment = force + on.force, moment + cross_rows(on.about - about, on.force) + on.moment
         parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:

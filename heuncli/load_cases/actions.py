@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from heuncli.kinetostatics.actions import Action, joint_actions
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.sections import Attachment, attachments, in_body_axes
 from heuncli.load_cases.model import AccelerationField, PointAction
 from heuncli.mechanism.model import GROUND, Mechanism
@@ -73,7 +73,7 @@ def _tidy_field(field: AccelerationField, r: float) -> AccelerationField:
 def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
     """The body's share of every action; a joint's drive and stops beside what its constraint carries."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    for action in [*joint_actions(recovery.joints), *recovery.applied]:
+    for action in recovery.standing:
         on = attachments(body, states, [action])
         by = [OUTSIDE] * len(on) if action.spread else _exerted_by(mechanism, action, body)
         for own, other in zip(on, by, strict=True):

@@ -9,6 +9,7 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
@@ -67,8 +68,14 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     if planar:
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
+        told |= {joints[joint][0] for joint in coupled(spec)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
+    couplings: tuple[Coupling, ...] = ()
+    if spec.couplings:
+        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+
+        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -82,6 +89,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         ),
         conditions=conditions,
         points=points,
+        couplings=couplings,
     )
 
 
@@ -144,6 +152,11 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         drive=None, restitution=j.restitution, bearing=j.bearing,
         p_name=j.p_name, q_name=j.q_name,
     )  # fmt: skip
+
+
+def coupled(spec: m.Spec) -> set[str]:
+    """The joints whose coordinates are coupled."""
+    return {term.joint for coupling in spec.couplings.values() for term in coupling.terms}
 
 
 def coordinates_used(

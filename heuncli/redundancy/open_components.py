@@ -13,6 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
 from heuncli.kinetostatics.joint_axes import components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.redundancy.self_stress import SelfStress
@@ -97,7 +98,11 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
 
 
 def open_in_section(
-    cuts: Cuts, states: BodyStates, joints: Sequence[JointLoads], stress: SelfStress
+    cuts: Cuts,
+    states: BodyStates,
+    joints: Sequence[JointLoads],
+    couplings: Sequence[CouplingLoads],
+    stress: SelfStress,
 ) -> dict[str, Mask]:
     """Of each component of a section's loads whether it is open: some self-stress has a share in it."""
     from heuncli.kinetostatics.sections import MOMENTS, attachments, components_at_rest
@@ -105,7 +110,9 @@ def open_in_section(
     is_open: dict[str, Mask] = {}
     for k in range(stress.largest.shape[1]):
         parts = zip(joints, stress.shares, strict=True)
-        on = attachments(cuts.body, states, [joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts])
+        actions = [joint_action(j, s[:, :3, k], s[:, 3:, k]) for j, s in parts]
+        actions += coupling_actions([own.of_multipliers(stress.multipliers[:, :, k]) for own in couplings])
+        on = attachments(cuts.body, states, actions)
         limit = np.where(stress.largest[:, k] > 0.0, tolerances.OPEN_SHARE * stress.largest[:, k], np.inf)
         for name, share in components_at_rest(cuts, states, on).items():
             scale = limit * (stress.length if name in MOMENTS else 1.0)

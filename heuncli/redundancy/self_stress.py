@@ -42,6 +42,7 @@ class SelfStress:
     least: Array
     left: Array
     dependent: Array
+    multipliers: Array  # (n_t, rows, k) of the closure rows
 
     def reaches(self, shares: Array, length: float = 1.0) -> Mask:
         """Whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); moments: give `length`."""
@@ -133,7 +134,7 @@ def stress_of(runner: Evaluator, poses: StressPoses) -> SelfStress:
             counts = np.linalg.matrix_rank(np.concatenate(list(shares / size), axis=1), tol=tolerances.OPEN_SHARE)
     largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
-    return SelfStress(shares, largest, counts, length, least, left, dependent)
+    return SelfStress(shares, largest, counts, length, least, left, dependent, Z)
 
 
 class Values(NamedTuple):
@@ -210,7 +211,7 @@ def _shares(runner: Evaluator, poses: StressPoses, Z: Array) -> Array:
             shares[h.joint] *= -1.0
     rows = np.array(layout.rows)
     unit = np.concatenate([poses.f, poses.m], axis=2).transpose(0, 2, 1)
-    for k in dict.fromkeys(layout.rows):
+    for k in dict.fromkeys(k for k in layout.rows if k < len(joints)):
         own = np.flatnonzero(rows == k)
         shares[k] += unit[:, :, own] @ Z[:, own]
     return shares

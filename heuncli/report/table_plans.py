@@ -146,6 +146,13 @@ STOPS = TablePlan(
     lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
     _stop_note,
 )
+COUPLINGS = TablePlan(
+    "joints",
+    "couplings",
+    "coupling",
+    ("force", "moment"),
+    lambda results, labels: "COUPLINGS  the load that each carries",
+)
 SECTIONS = TablePlan(
     "sections",
     "sections",
@@ -189,6 +196,7 @@ PLANS = (
     AXIS,
     JOINTS,
     STOPS,
+    COUPLINGS,
     SECTIONS,
     TablePlan(
         "forces",

@@ -75,7 +75,7 @@ def singular(coordinates: Coordinates, at: Pose) -> Problem:
     """The problem of a way that ends in a singular pose: what moves there moves on in more than one way."""
     layout, rows = coordinates.layout, at.recovered.rows
     left_out = [r for r in range(len(layout.rows)) if rows["closed"][0, r] > rows["chosen"][0, r]]
-    names = dict.fromkeys(f"joints.{layout.mechanism.joints[layout.rows[r]].name}" for r in left_out)
+    names = dict.fromkeys(layout.mechanism.owner(layout.rows[r]) for r in left_out)
     through = f" through {' and '.join(names)}" if names else ""
     message = f"the way there ends where the closed chain{through} is stretched, folded or flat: a singular pose"
     return no_rest(message, "from there it may go on in more than one way: limit it by a stop before that pose")

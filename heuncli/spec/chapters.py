@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 
 from heuncli.spec import format as f
+from heuncli.spec import format_couplings as fc
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.entries import Entry
 
@@ -21,6 +22,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     **f.LOADS,
     "Impulses": f.ImpulseEntry,
     "Stops": f.StopEntry,
+    **fc.COUPLINGS,
     "Sections": f.SectionEntry,
     "Properties": f.PropertiesEntry,
     "Analysis": f.AnalysisEntry,

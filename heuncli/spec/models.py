@@ -18,6 +18,7 @@ from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
+from heuncli.spec.couplings import Coupling
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -32,6 +33,7 @@ Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
+NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
 
 
 class End(NamedTuple):
@@ -442,6 +444,7 @@ class Spec(NamedTuple):
     locations: Mapping[str, SourceLocation] = NOWHERE
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
+    couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

@@ -12,7 +12,8 @@ from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 
 GROUND = "ground"
-NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables", "cases")
+NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "couplings", "sections",
+         "tables", "cases")  # fmt: skip
 ALL_CASES = "all"  # what --case takes for every one of them
 UNTIL = "until"  # the condition that ends a motion, beside the events that have names
 CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
@@ -24,6 +25,7 @@ RESERVED_FOR: dict[str, frozenset[str]] = {
     "forces": CAUSES,
     "impulses": CAUSES,
     "stops": CAUSES,
+    "couplings": CAUSES,
     "cases": frozenset({ALL_CASES}),
 }
 

@@ -15,8 +15,11 @@ from heuncli.records import record
 from heuncli.spec import format as f
 from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m
+from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
+from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.names import GROUND, UNTIL
+from heuncli.spec.resolve_couplings import meant
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
@@ -54,6 +57,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
+        couplings=r.entries("couplings", "coupling"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
         analysis=r.single("analysis"),
@@ -289,6 +293,9 @@ class Resolver:
             item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
+
+    def coupling(self, name: str, given: CouplingEntry) -> Coupling:
+        return meant(self, name, given)
 
     def stop(self, name: str, given: f.StopEntry) -> m.Stop[str]:
         found = limits_of(given)

@@ -27,6 +27,7 @@ from heuncli.joint_kinds import is_length
 from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
+from heuncli.kinetostatics.couplings import coupling_actions
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -75,7 +76,12 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     # as they act with the drives: friction hangs on what the joint carries then
     applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
     k = forces_by_cause(layout, partials, applied)
-    scale = size_of_terms(layout, partials, [*applied, *whole_joint_actions(at.recovery.unsplit)], states)
+    scale = size_of_terms(
+        layout,
+        partials,
+        [*applied, *whole_joint_actions(at.recovery.unsplit), *coupling_actions(at.recovery.couplings)],
+        states,
+    )
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
     total = sum(k.values(), np.zeros(len(q1)))
     drives = drive_rows(at, by)

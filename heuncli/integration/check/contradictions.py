@@ -136,13 +136,12 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
 def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
     """The problem, with the loop concerned and its drives."""
     layout = runner.layout
-    joints = layout.mechanism.joints
     gaps = recovered(runner, max(bad, good.t + AHEAD * last), good.y).rows["gap"][0]
     worst = int(np.argmax(np.where(np.isfinite(gaps), np.abs(gaps), math.inf)))
     drives = drives_of(layout, next(island for island in layout.islands if worst in island.rows))
-    joint = joints[layout.rows[worst]]
+    owner = layout.mechanism.owner(layout.rows[worst])
     at = f"at t = {bad:.9g} s: the closed chains cannot be held together beyond this instant"
-    message = f"{at}, in the loop at joint {joint.name} ({joint.kind})"
+    message = f"{at}, in the loop at {owner}"
     if not drives:
         hint = "the mechanism locks or reaches the end of its range there"
     elif len(drives) == 1:
@@ -150,7 +149,7 @@ def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
     else:
         names = f"{', '.join(drives[:-1])} and {drives[-1]}"
         hint = f"the drives {names} ask there for what does not go together, or for more than the loop can do"
-    return Problem("closure-lost", message, hint=hint, about=f"joints.{joint.name}")
+    return Problem("closure-lost", message, hint=hint, about=owner)
 
 
 def drives_of(layout: Layout, island: Island) -> list[str]:

@@ -142,10 +142,19 @@ def pushing(layout: Layout, jump: Jump) -> str | None:
         *(np.abs(given.force).max() + np.abs(given.moment).max() / layout.size for given in jump.impulses),
     )  # fmt: skip
     for r, k in enumerate(layout.rows):
-        joint = layout.mechanism.joints[k]
-        if joint.tension_only and joint.restitution is None and impulses[r] > tolerances.NO_FORCE * largest:
-            return joint.name
+        if impulses[r] > tolerances.NO_FORCE * largest and ends_pushed(layout, r, k):
+            return layout.mechanism.owner(k).partition(".")[2]
     return None
+
+
+def ends_pushed(layout: Layout, r: int, owner: int) -> bool:
+    """Whether a closure row is a rope at which a run ends where it would push."""
+    mechanism = layout.mechanism
+    if owner < len(mechanism.joints):
+        joint = mechanism.joints[owner]
+        return joint.tension_only and joint.restitution is None
+    row = mechanism.couplings[owner - len(mechanism.joints)].rows[r - layout.rows.index(owner)]
+    return row.tension_only and row.restitution is None
 
 
 def require_pull(rope: str | None) -> None:

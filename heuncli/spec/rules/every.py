@@ -6,6 +6,7 @@ from heuncli.spec.rules import (
     analysis,
     bodies,
     conditions,
+    couplings,
     curves,
     expect,
     joints,
@@ -22,8 +23,8 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, sections, analysis, methods, conditions,
-    expect, curves, not_yet,
+    naming, references, bodies, products, joints, plane, loads, stops, couplings, sections, analysis, methods,
+    conditions, expect, curves, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

@@ -237,7 +237,7 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            return [*entries["forces"], *entries["drives"], *entries["stops"], *shared]
+            return [*entries["forces"], *entries["drives"], *entries["stops"], *entries["couplings"], *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
@@ -246,6 +246,10 @@ def named(word: str, names: Names) -> list[str]:
             return list(entries["sections"])
         case "STOP":
             return list(entries["stops"])
+        case "COUPLING":
+            return list(entries["couplings"])
+        case "END":
+            return [*entries["bodies"], GROUND]
         case "NUMBER":
             return ["0", "1", "2"]
         case "FORCE":

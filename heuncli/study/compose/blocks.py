@@ -16,9 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.actions import AppliedLoad, joint_actions, whole_joint_actions
+from heuncli.kinetostatics.actions import AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_block
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
@@ -40,11 +41,12 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     recovered, states = recovery.recovered, recovery.states
     shown: dict[str, Any] = {}
     if "foundation" in wanted:
-        actions = [*recovery.applied, *joint_actions(recovery.joints)]
-        shown["foundation"] = foundation(mechanism, states, actions, recovery.setup.about)
+        shown["foundation"] = foundation(mechanism, states, recovery.standing, recovery.setup.about)
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
+        names = [body.name for body in mechanism.bodies]
+        shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
@@ -135,7 +137,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     # only scenes with sections load it
     from heuncli.kinetostatics.sections import attachments, section
 
-    actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
+    actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
     for asked in recovery.setup.cuts:
         on = attachments(asked.body, states, actions)
         cuts = asked.laid_for(on)
@@ -143,7 +145,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
         if stress is not None:
             from heuncli.redundancy.open_components import names_in_section, open_in_section
 
-            is_open = open_in_section(cuts, states, recovery.joints, stress)
+            is_open = open_in_section(cuts, states, recovery.joints, recovery.couplings, stress)
         own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
         block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
         if by_cause:

@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 
 from heuncli.errors import SolveError
-from heuncli.kinetostatics.actions import joint_actions
 from heuncli.kinetostatics.foundation import inertia_loads, largest_force, no_force
 from heuncli.results import Array
 from heuncli.results_schema import quantity
@@ -110,7 +109,7 @@ def put(shown: Mapping[str, Any], own: Mapping[str, Any], first: int) -> None:
 def largest_force_at(recovery: Recovery, s: Array) -> float:
     """The largest force of a part that its foundation's s (n_t, 3) is seen beside [N]."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    actions = [*recovery.applied, *joint_actions(recovery.joints)]
+    actions = recovery.standing
     return largest_force(mechanism, s, inertia_loads(mechanism, states)[0], actions)
 
 

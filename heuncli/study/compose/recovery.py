@@ -12,8 +12,9 @@ import numpy as np
 
 from heuncli.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, whole_joint_actions
+from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
 from heuncli.kinetostatics.reactions import JointLoads, at_instants, joint_loads
@@ -127,6 +128,11 @@ class Recovery:
         return joint_loads(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
+    def couplings(self) -> list[CouplingLoads]:
+        """What couplings exert."""
+        return coupling_loads(self.setup.scene.layout, self.recovered)
+
+    @cached_property
     def loads(self) -> list[AppliedLoad]:
         """The applied loads; of a spring whose points coincide the rate at which they part: its line begins there."""
         found = applied_loads(self.setup.scene.mechanism, self.states, self.recovered)
@@ -163,7 +169,13 @@ class Recovery:
     @cached_property
     def actions(self) -> list[Action]:
         """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
-        return [*self.applied, *whole_joint_actions(self.joints if self.verdicts else self.unsplit)]
+        joints = whole_joint_actions(self.joints if self.verdicts else self.unsplit)
+        return [*self.applied, *joints, *coupling_actions(self.couplings)]
+
+    @property
+    def standing(self) -> list[Action]:
+        """The same, of each joint constraint, drive and stops apart: what may stand on the ground."""
+        return [*self.applied, *joint_actions(self.joints), *coupling_actions(self.couplings)]
 
     @cached_property
     def energy(self) -> Block:

@@ -135,6 +135,8 @@ def count(row: Quantity, setup: Setup) -> int:
         "JOINT": grounded if row.path.startswith("foundation.") else len(mechanism.joints),
         "ELEMENT": len(mechanism.loads),
         "STOP": len(mechanism.stops),
+        "COUPLING": len(mechanism.couplings),
+        "END": 2,
         "SECTION": sum(len(cuts.side) for cuts in setup.cuts) if CUT in row.shape else len(setup.cuts),
         "FORCE": len(mechanism.loads),
         "CAUSE": len(mechanism.loads) + BESIDE_LOADS,

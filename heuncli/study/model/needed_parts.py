@@ -19,9 +19,9 @@ from heuncli.study.model.counts_and_lists import some
 from heuncli.study.model.selection import Selection, entries_of
 
 Ends = Mapping[str, Mapping[str, set[str]]]
-STANDING = ("joints", "drives", "forces", "impulses", "stops")  # blocks of what stands on bodies
+STANDING = ("joints", "drives", "forces", "impulses", "stops", "couplings")  # blocks of what stands on bodies
 # reports that are of some bodies alone, and the blocks of what they tell; the others are of all
-OF_SOME = {"joints": (("joints",), ("stops",)), "sections": (("sections",),), "forces": (("forces",),),
+OF_SOME = {"joints": (("joints",), ("stops",), ("couplings",)), "sections": (("sections",),), "forces": (("forces",),),
     "points": (("points",),)}  # fmt: skip
 
 
@@ -39,6 +39,8 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
             found.add(value)
         elif name == "joint":
             found |= bodies_of(spec.joints[value], spec)
+        elif name in ("terms", "ends"):  # of couplings
+            found |= {body for one in value for body in bodies_of(one, spec)}
     return found & spec.bodies.keys()
 
 
@@ -81,7 +83,10 @@ def needed(spec: Spec, asked: Selection, ends: Ends) -> set[str]:
     begun = roots(spec, asked)
     if begun is None:
         return set(spec.bodies)
-    moved = list(ends["joints"].values())  # sets of bodies of which none is solved without the others
+    moved = [
+        *ends["joints"].values(),
+        *ends["couplings"].values(),
+    ]  # sets of bodies of which none is solved without the others
     beside: dict[str, set[str]] = {name: set() for name in spec.bodies}
     for block in ("forces", "drives", "impulses"):
         items: Mapping[str, Any] = getattr(spec, block)

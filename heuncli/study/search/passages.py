@@ -9,6 +9,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import whole_joint_actions
+from heuncli.kinetostatics.couplings import coupling_actions
 from heuncli.results import Array
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
@@ -47,7 +48,7 @@ def on_pieces(recovery: Recovery) -> Array:
     """1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
     from heuncli.kinetostatics.sections import attachments, on_piece
 
-    actions = [*whole_joint_actions(recovery.joints), *recovery.applied]
+    actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
     columns = [
         on_piece(cuts, a.at)[:, 0]
         for cuts in recovery.setup.cuts

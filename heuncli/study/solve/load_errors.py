@@ -20,6 +20,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import total
 from heuncli.kinetostatics.joint_axes import in_axes
@@ -118,13 +119,14 @@ class LoadErrors:
         self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
+        acting = [*applied, *coupling_actions(coupling_loads(self.setup.scene.layout, several))]
         if "reactions" in self.compared:
             self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
-            self.add_foundation(states, [*applied, *joint_actions(driven)], terms)
+            self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
         if self.setup.cuts and "sections" in self.compared:
-            self.add_sections(states, [*whole_joint_actions(joints), *applied], terms)
+            self.add_sections(states, [*whole_joint_actions(joints), *acting], terms)
         if "forces" in self.compared:
             self.add_forces(loads, terms)
         if self.by_cause:

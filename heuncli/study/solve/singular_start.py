@@ -112,8 +112,8 @@ def pushed(layout: Layout, recovered: Recovered, along: Recovered) -> bool:
 
 def goes_nowhere(layout: Layout, t: float, island: Island) -> Problem:
     """The problem of a chain that is pushed where it cannot go."""
-    names = dict.fromkeys(layout.mechanism.joints[layout.rows[r]].name for r in island.rows.tolist())
-    through = " and ".join(f"joints.{name}" for name in names)
+    names = dict.fromkeys(layout.mechanism.owner(layout.rows[r]) for r in island.rows.tolist())
+    through = " and ".join(names)
     message = (
         f"at t = {t:.9g} s the loads push the closed chain through {through} in a singular pose (stretched, folded or "
         "flat) along a motion that closes to the first order only: no acceleration exists, and no finite force holds it"

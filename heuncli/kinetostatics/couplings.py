@@ -1,0 +1,132 @@
+"""What couplings exert: each condition of two bodies its load, a force and a couple at one place, ON both of them.
+
+The loads are those of the kernel's parts for the multipliers of their rows. World axes; shapes (..., n_t, 3), before
+the instants an axis of causes where they are told by cause.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+
+import numpy as np
+
+from heuncli.kinetostatics.actions import Action, ActionEnd
+from heuncli.kinetostatics.reactions import Answers
+from heuncli.mechanism.couplings import Coupling, Part
+from heuncli.mechanism.model import GROUND
+from heuncli.records import record, replace
+from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows
+from heuncli.tree.layout import Layout
+
+
+@record
+class PartLoad:
+    """Force and moment of one part ON its body b, the opposite ON a, about the place (n_t, 3).
+
+    f, m (n_t, 3): those for a multiplier of 1.
+    """
+
+    part: Part
+    place: Array
+    f: Array
+    m: Array
+    multiplier: Array
+
+    @property
+    def force(self) -> Array:
+        """Force ON b."""
+        found: Array = self.multiplier[..., None] * self.f
+        return found
+
+    @property
+    def moment(self) -> Array:
+        """Moment ON b about the place."""
+        found: Array = self.multiplier[..., None] * self.m
+        return found
+
+    def of_multiplier(self, multiplier: Array) -> PartLoad:
+        """The same with another multiplier."""
+        return replace(self, multiplier=multiplier)
+
+    @property
+    def ends(self) -> tuple[ActionEnd, ActionEnd]:
+        """Where it acts on b and on a: it may move over both."""
+        return ActionEnd(self.part.b, self.place, None, apart=True), ActionEnd(
+            self.part.a, self.place, None, apart=True
+        )
+
+
+@record
+class CouplingLoads:
+    """What a coupling exerts; multipliers: of its rows, (..., n_t) each."""
+
+    coupling: Coupling
+    rows: tuple[int, ...]
+    multipliers: tuple[Array, ...]
+    parts: tuple[PartLoad, ...]
+
+    def of_multipliers(self, multipliers: Array) -> CouplingLoads:
+        """What it would exert with other multipliers of all rows, (n_t, rows)."""
+        own = tuple(multipliers[:, r] for r in self.rows)
+        places = iter(self.parts)
+        parts = tuple(
+            next(places).of_multiplier(multiplier)
+            for row, multiplier in zip(self.coupling.rows, own, strict=True)
+            for _ in row.parts
+        )
+        return CouplingLoads(self.coupling, self.rows, own, parts)
+
+    def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
+        """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
+        found: dict[int, tuple[Array, Array, Array]] = {}
+        for part in self.parts:
+            for body, sign in ((part.part.b, 1.0), (part.part.a, -1.0)):
+                at, force, moment = found.get(body, (part.place, np.zeros_like(part.force), np.zeros_like(part.moment)))
+                moment = moment + sign * (part.moment + cross_rows(part.place - at, part.force))
+                found[body] = at, force + sign * part.force, moment
+        return found
+
+
+def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | None = None) -> list[CouplingLoads]:
+    """The loads of all couplings, in the order of the spec; only: of those of some names."""
+    mechanism, found = layout.mechanism, []
+    for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
+        if only is not None and coupling.name not in only:
+            continue
+        rows = tuple(r for r, k in enumerate(layout.rows) if k == owner)
+        multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
+        parts: list[PartLoad] = []
+        for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
+            parts += _part_loads(layout, r, row.parts, multiplier, recovered)
+        found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
+    return found
+
+
+def _part_loads(
+    layout: Layout, r: int, parts: Sequence[Part], multiplier: Array, recovered: Answers
+) -> Iterator[PartLoad]:
+    """The loads of the parts of one row."""
+    first = int(layout.tables["closures"][r]["part"])
+    for k, part in enumerate(parts, first):
+        f, m, Q = (recovered.parts[name][:, k] for name in ("f", "m", "Q"))
+        yield PartLoad(part, Q, f, m, multiplier)
+
+
+def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
+    """What they exert, an action a part."""
+    return [
+        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment)
+        for own in couplings
+        for part in own.parts
+    ]
+
+
+def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
+    """A coupling's block of the results; names: of the bodies."""
+    on = {
+        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
+        for body, (place, force, moment) in loads.on_bodies().items()
+    }
+    carried = "moment" if loads.coupling.rows[0].is_couple else "force"
+    return {carried: loads.multipliers[0], "on": on, "open": []}
