@@ -12,7 +12,7 @@ import numpy as np
 
 from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.reactions import Answers
-from heuncli.mechanism.couplings import Coupling, Part
+from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -27,7 +27,7 @@ class PartLoad:
     f, m (n_t, 3): those for a multiplier of 1.
     """
 
-    part: Part
+    part: CouplingPart
     place: Array
     f: Array
     m: Array
@@ -104,7 +104,7 @@ def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | N
 
 
 def _part_loads(
-    layout: Layout, r: int, parts: Sequence[Part], multiplier: Array, recovered: Answers
+    layout: Layout, r: int, parts: Sequence[CouplingPart], multiplier: Array, recovered: Answers
 ) -> Iterator[PartLoad]:
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, Part
+from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.model import Joint
 from heuncli.records import replace
 from heuncli.spec import couplings as c
@@ -27,10 +27,10 @@ def ratio(given: c.Ratio, joints: Sequence[Joint], number: Mapping[str, int]) ->
     return (CoupledRow(parts, given.is_, SIZE if turning else 1.0),)
 
 
-def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float) -> Part:
+def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float) -> CouplingPart:
     """The condition on a joint's coordinate: of an angle its couple, of a travel its force."""
     joint = joints[k]
-    found = Part("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
+    found = CouplingPart("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
     return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
 
 

@@ -28,7 +28,7 @@ class Coordinate(NamedTuple):
 
 
 @record
-class Part:
+class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
@@ -82,7 +82,7 @@ class CoupledRow:
     restitution it opens and closes, without the run ends where it would push.
     """
 
-    parts: tuple[Part, ...]
+    parts: tuple[CouplingPart, ...]
     length: float | None = None
     weight: float = 1.0
     tension_only: bool = False

@@ -16,7 +16,7 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.models import End
 
 
-class Resolver(Protocol):
+class Following(Protocol):
     """What follows the references of a document (resolve.py)."""
 
     document: whole.Document
@@ -28,12 +28,12 @@ class Resolver(Protocol):
         """An expression with its place in the file; path: dotted."""
 
 
-def meant(by: Resolver, name: str, entry: f.CouplingEntry) -> c.Coupling:
+def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
     """The coupling that an entry means; name: of it, for the places of its expressions."""
     return MEANINGS[entry.type](by, name, entry)
 
 
-def ratio(by: Resolver, name: str, entry: f.RatioEntry) -> c.Ratio:
+def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     """A linear relation of the first coordinates of joints."""
     kinds = [TYPES[by.document.joints[joint].type] for joint in entry.of]
     rows = zip(entry.of, kinds, entry.factors, strict=True)

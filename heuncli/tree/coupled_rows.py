@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.couplings import GROUND, CoupledRow, Part
+from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 
 KINDS = {
@@ -18,7 +18,9 @@ InTree = Callable[[int], int]  # a body's place in the tree
 Relative = Callable[[int, Vector], Vector]  # a body's point from its joint point
 
 
-def part_row(part: Part, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]) -> ClosureRow:
+def part_row(
+    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+) -> ClosureRow:
     """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]

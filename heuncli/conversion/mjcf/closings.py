@@ -30,7 +30,7 @@ SAME = 1e-6  # of a turn: the digits to which people write quaternions
 SITES = 2  # of a tendon that runs straight
 
 
-class Coupling(NamedTuple):
+class JointEquality(NamedTuple):
     """Joint `slave` follows joint `master` (None: it stands) by the polynomial: numbers of MuJoCo's joints."""
 
     equality: int
@@ -43,7 +43,7 @@ class Closings(NamedTuple):
     """What closes loops. carried: numbers of the equalities that the spec holds; left_out: why others are not."""
 
     joints: tuple[DescribedEntry, ...]
-    couplings: tuple[Coupling, ...]
+    couplings: tuple[JointEquality, ...]
     carried: frozenset[int]
     rods: frozenset[int]  # the tendons that are rods
     left_out: tuple[Problem, ...]
@@ -73,7 +73,7 @@ class Closer:
     ) -> None:
         self.c, self.frames, self.tree, self.points, self.name = c, frames, tree, points, name
         self.joints: list[DescribedEntry] = []
-        self.couplings: list[Coupling] = []
+        self.couplings: list[JointEquality] = []
         self.carried: set[int] = set()
         self.rods: set[int] = set()
         self.left_out: list[Problem] = []
@@ -171,7 +171,7 @@ class Closer:
         model = self.c.model
         slave, master = int(model.eq_obj1id[number]), int(model.eq_obj2id[number])
         polynomial = tuple(float(x) for x in model.eq_data[number][:5])
-        self.couplings.append(Coupling(number, slave, master if master >= 0 else None, polynomial))
+        self.couplings.append(JointEquality(number, slave, master if master >= 0 else None, polynomial))
 
     def tendon(self, number: int) -> None:
         model = self.c.model
