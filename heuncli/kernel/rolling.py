@@ -19,9 +19,10 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.scene import (
+        BALL_ROLLS,
+        BALL_TOUCHES,
         ROLLS,
         ROLLS_ASIDE,
-        ROLLS_BALL,
         Carried,
         Closure,
         Moving,
@@ -51,14 +52,14 @@ def rolling_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
 
 def is_of_speed(row: cython.pointer[Closure]) -> cython.bint:
     """Whether a row holds a speed and no pose: it has no gap."""
-    return row.kind == ROLLS or row.kind == ROLLS_ASIDE or row.kind == ROLLS_BALL
+    return row.kind == ROLLS or row.kind == ROLLS_ASIDE or row.kind == BALL_ROLLS
 
 
 def wheel_contact(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> WheelContact:
     """Where the wheel touches the plane, and the direction that its row looks along."""
     n: Moving = direction_moving(scene, row.a, row.e)
     C: Moving = centre_moving(scene, row)
-    if row.kind == ROLLS_BALL:
+    if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
         return WheelContact(along_moving(C, -row.length, n), direction_moving(scene, row.a, row.g))
     k: Moving = direction_moving(scene, row.b, row.g)
     t: Moving = unit_moving(cross_moving(k, n))

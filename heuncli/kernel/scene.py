@@ -18,7 +18,7 @@ TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
-TOUCHES, ROLLS, ROLLS_ASIDE, ROLLS_BALL = range(30, 34)  # of wheels
+TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -141,8 +141,8 @@ class Closure(Record):
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms.
-    TOUCHES, ROLLS, ROLLS_ASIDE, ROLLS_BALL: a wheel's on a plane (kernel/rolling.py); all but the first hold a speed,
-    and have no gap.
+    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: a wheel's on a plane (kernel/rolling.py); those that roll
+    hold a speed, and have no gap.
     """
 
     kind: int

@@ -17,9 +17,10 @@ if not cython.compiled:
     from heuncli.kernel.loads import omega_of
     from heuncli.kernel.rolling import along_moving, centre_moving, cross_moving, direction_moving
     from heuncli.kernel.scene import (
+        BALL_ROLLS,
+        BALL_TOUCHES,
         ROLLS,
         ROLLS_ASIDE,
-        ROLLS_BALL,
         Closure,
         MotionTangent,
         Moving,
@@ -69,7 +70,7 @@ def wheel_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> W
     n: MovingTangent = direction_along(scene, row.a, row.e)
     centre: PointMotion = point_along(scene, row.b, row.q)
     C: MovingTangent = MovingTangent(centre_moving(scene, row), Moving(centre.x, centre.v))
-    if row.kind == ROLLS_BALL:
+    if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
         return WheelTangent(sum_along(C, -row.length, n), direction_along(scene, row.a, row.g))
     k: MovingTangent = direction_along(scene, row.b, row.g)
     t: MovingTangent = unit_along(cross_along(k, n))

@@ -10,6 +10,7 @@ import numpy as np
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.directions import unit
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
@@ -73,9 +74,9 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+        from heuncli.mechanism.build_couplings import Numbered, couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
+        couplings = couplings_of(spec, Numbered(made, {name: k for name, (k, _) in joints.items()}, index))
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -101,14 +102,6 @@ def optional(value: m.Vec | m.Matrix | None) -> Array | None:
 def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
     """A vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.in_body)
-
-
-def unit(vector: m.Vec) -> Array:
-    """The direction of a vector that the spec layer found not to be zero."""
-    v = np.array(vector, dtype=float)
-    v = v / np.abs(v).max()
-    along: Array = v / np.sqrt(v @ v)
-    return along
 
 
 def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:

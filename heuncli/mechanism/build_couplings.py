@@ -2,27 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
+from heuncli.mechanism.directions import unit
 from heuncli.mechanism.model import Joint
-from heuncli.records import replace
+from heuncli.mechanism.wheels import Ends, ball_rows, disc_rows
+from heuncli.records import record, replace
 from heuncli.spec import couplings as c
 from heuncli.spec.models import Spec
 
 SIZE = 0.0  # weight of gaps that are angles: the scene's size
 
 
-def couplings_of(spec: Spec, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[Coupling, ...]:
-    """All couplings, in the order of the spec; number: of the joints by their names."""
-    return tuple(
-        Coupling(name, MADE[given.type](given, joints, number), given) for name, given in spec.couplings.items()
-    )
+@record
+class Numbered:
+    """What couplings are made between: the joints, and the numbers of bodies and joints by their names."""
+
+    joints: Sequence[Joint]
+    joint: Mapping[str, int]
+    body: Mapping[str, int]
 
 
-def ratio(given: c.Ratio, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[CoupledRow, ...]:
+def couplings_of(spec: Spec, of: Numbered) -> tuple[Coupling, ...]:
+    """All couplings, in the order of the spec."""
+    return tuple(Coupling(name, MADE[given.type](given, of), given) for name, given in spec.couplings.items())
+
+
+def ratio(given: c.Ratio, of: Numbered) -> tuple[CoupledRow, ...]:
     """The sum of coordinates, each times its factor: a couple about each axis, a force along each guide."""
-    parts = tuple(of_coordinate(joints, number[x.joint], x.quantity, x.factor) for x in given.terms)
+    parts = tuple(of_coordinate(of.joints, of.joint[x.joint], x.quantity, x.factor) for x in given.terms)
     turning = all(x.quantity == "angle" for x in given.terms)
     return (CoupledRow(parts, given.is_, SIZE if turning else 1.0),)
 
@@ -34,4 +43,15 @@ def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float)
     return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
 
 
-MADE = {"ratio": ratio}
+def wheel(given: c.Wheel, of: Numbered) -> tuple[CoupledRow, ...]:
+    """A wheel on its plane."""
+    ends: Ends = {
+        "a": of.body[given.on.body], "b": of.body[given.wheel.body], "p": given.on.point, "q": given.wheel.point,
+        "e": unit(given.normal),
+    }  # fmt: skip
+    if given.axis is None:
+        return ball_rows(ends, given.radius, held=given.held)
+    return disc_rows(ends, unit(given.axis), given.radius, slides=given.slides, held=given.held)
+
+
+MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {"ratio": ratio, "wheel": wheel}

@@ -11,11 +11,12 @@ from typing import Literal
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.spec import couplings as spec
 
 GROUND = -1
+Place = Array | tuple[float, float, float]
 NOWHERE = (0.0, 0.0, 0.0)
 
 
@@ -36,7 +37,7 @@ class CouplingPart:
     """
 
     kind: Literal[
-        "guide", "dot", "rod", "turn", "mesh", "touches", "rolls", "rolls_aside", "rolls_ball"
+        "guide", "dot", "rod", "turn", "mesh", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls"
     ]  # fmt: skip
     a: int
     b: int
@@ -49,10 +50,14 @@ class CouplingPart:
     coordinates: tuple[Coordinate, ...] = ()
     radius: float = 0.0
 
+    def times(self, factor: float) -> CouplingPart:
+        """The same, taken so many times."""
+        return replace(self, factor=factor)
+
     @property
     def holds_speed(self) -> bool:
         """Whether it holds a speed and no pose."""
-        return self.kind in ("rolls", "rolls_aside", "rolls_ball")
+        return self.kind in ("rolls", "rolls_aside", "ball_rolls")
 
     @property
     def is_couple(self) -> bool:

@@ -5,9 +5,12 @@ One class a type; joints and bodies by their names. As in spec/models.py, None i
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from heuncli.named_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from heuncli.spec.models import End, Vec  # which knows this module
 
 
 class Term(NamedTuple):
@@ -26,4 +29,23 @@ class Ratio(NamedTuple):
     type: Literal["ratio"] = "ratio"
 
 
-Coupling = Ratio  # a union of the classes here
+class Wheel(NamedTuple):
+    """A wheel that rolls on a plane.
+
+    wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
+    wheel, in the axes of the body that has the plane. friction: the coefficient from which on it slips, None: never.
+    slides: it does not roll along its track, and only does not slip aside. held: the plane can pull it, too.
+    """
+
+    wheel: End
+    axis: Vec | None
+    radius: float
+    on: End
+    normal: Vec
+    friction: float | None = None
+    slides: bool = False
+    held: bool = False
+    type: Literal["wheel"] = "wheel"
+
+
+Coupling = Ratio | Wheel

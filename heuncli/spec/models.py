@@ -446,6 +446,11 @@ class Spec(NamedTuple):
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
+    @property
+    def rolling(self) -> Mapping[str, Coupling]:
+        """The couplings that are wheels, which stand in a block of their own."""
+        return {name: given for name, given in self.couplings.items() if given.type == "wheel"}
+
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""
         while path and path not in self.locations:

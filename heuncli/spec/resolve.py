@@ -18,8 +18,9 @@ from heuncli.spec import models as m
 from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import meant
+from heuncli.spec.resolve_couplings import meant, wheel_meant
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
@@ -57,7 +58,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling"),
+        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
         analysis=r.single("analysis"),
@@ -293,6 +294,9 @@ class Resolver:
             item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
+
+    def wheel(self, name: str, given: RollingEntry) -> Coupling:
+        return wheel_meant(self, given)
 
     def coupling(self, name: str, given: CouplingEntry) -> Coupling:
         return meant(self, name, given)

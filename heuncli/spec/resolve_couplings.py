@@ -13,6 +13,7 @@ from heuncli.spec import couplings as c
 from heuncli.spec import format as whole
 from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.models import End
 
 
@@ -38,6 +39,14 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     kinds = [TYPES[by.document.joints[joint].type] for joint in entry.of]
     rows = zip(entry.of, kinds, entry.factors, strict=True)
     return c.Ratio(tuple(c.Term(joint, kind.coordinates[0], factor) for joint, kind, factor in rows))
+
+
+def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
+    """The wheel that an entry of `rolling` means."""
+    return c.Wheel(
+        by.end(entry.wheel), entry.axis if entry.shape == "disc" else None, entry.radius, by.end(entry.on),
+        entry.normal, entry.friction, entry.slides is not None, entry.held,
+    )  # fmt: skip
 
 
 MEANINGS = {"ratio": ratio}

@@ -11,7 +11,7 @@ from heuncli.tree.rows import ZERO, ClosureRow, Vector
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
     "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE,
-    "rolls_ball": kernel.ROLLS_BALL,
+    "ball_touches": kernel.BALL_TOUCHES, "ball_rolls": kernel.BALL_ROLLS,
 }  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree

@@ -237,7 +237,8 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            return [*entries["forces"], *entries["drives"], *entries["stops"], *entries["couplings"], *shared]
+            own = ("forces", "drives", "stops", "couplings", "rolling")
+            return [*(name for block in own for name in entries[block]), *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
@@ -247,7 +248,7 @@ def named(word: str, names: Names) -> list[str]:
         case "STOP":
             return list(entries["stops"])
         case "COUPLING":
-            return list(entries["couplings"])
+            return [*entries["couplings"], *entries["rolling"]]
         case "END":
             return [*entries["bodies"], GROUND]
         case "NUMBER":
