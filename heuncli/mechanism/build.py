@@ -70,13 +70,14 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
+        seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
         from heuncli.mechanism.build_couplings import Numbered, couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, Numbered(made, {name: k for name, (k, _) in joints.items()}, index))
+        couplings = couplings_of(spec, Numbered(made, {name: k for name, (k, _) in joints.items()}, index, planar))
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -149,7 +150,7 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
 
 def coupled(spec: m.Spec) -> set[str]:
     """The joints whose coordinates are coupled."""
-    return {term.joint for coupling in spec.couplings.values() for term in coupling.terms}
+    return {term.joint for coupling in spec.couplings.values() for term in getattr(coupling, "terms", ())}
 
 
 def coordinates_used(

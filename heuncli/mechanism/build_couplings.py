@@ -17,11 +17,15 @@ SIZE = 0.0  # weight of gaps that are angles: the scene's size
 
 @record
 class Numbered:
-    """What couplings are made between: the joints, and the numbers of bodies and joints by their names."""
+    """What couplings are made between: the joints, and the numbers of bodies and joints by their names.
+
+    planar: whether the scene was declared so.
+    """
 
     joints: Sequence[Joint]
     joint: Mapping[str, int]
     body: Mapping[str, int]
+    planar: bool
 
 
 def couplings_of(spec: Spec, of: Numbered) -> tuple[Coupling, ...]:
@@ -51,7 +55,8 @@ def wheel(given: c.Wheel, of: Numbered) -> tuple[CoupledRow, ...]:
     }  # fmt: skip
     if given.axis is None:
         return ball_rows(ends, given.radius, held=given.held)
-    return disc_rows(ends, unit(given.axis), given.radius, slides=given.slides, held=given.held)
+    way = {"along": not given.slides, "aside": not of.planar}  # in the plane nothing goes aside
+    return disc_rows(ends, unit(given.axis), given.radius, way, held=given.held)
 
 
 MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {"ratio": ratio, "wheel": wheel}

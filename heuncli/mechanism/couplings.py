@@ -60,6 +60,11 @@ class CouplingPart:
         return self.kind in ("rolls", "rolls_aside", "ball_rolls")
 
     @property
+    def turns_its_bodies(self) -> bool:
+        """Whether it holds how its bodies turn, and not only where points of theirs are."""
+        return self.kind not in ("guide", "rod")
+
+    @property
     def is_couple(self) -> bool:
         """Whether its load is a couple alone."""
         return self.kind in ("dot", "turn")

@@ -6,13 +6,18 @@ opposite sign where the wheel may lift, for it then only presses), along its tra
 
 from __future__ import annotations
 
-from typing import TypedDict
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Literal, TypedDict
 
 import numpy as np
 
 from heuncli.mechanism.couplings import CoupledRow, CouplingPart, Place
 from heuncli.results import Array
 from heuncli.shapes.rotations import perpendicular
+
+# the speeds of a disc's contact, and what holds them
+SPEEDS: Mapping[str, Literal["rolls", "rolls_aside"]] = MappingProxyType({"along": "rolls", "aside": "rolls_aside"})
 
 
 class Ends(TypedDict):
@@ -25,11 +30,19 @@ class Ends(TypedDict):
     e: Place
 
 
-def disc_rows(ends: Ends, axle: Array, radius: float, *, slides: bool, held: bool) -> tuple[CoupledRow, ...]:
-    """The rows of a thin disc; slides: along its track; held: the plane pulls, too."""
+def disc_rows(
+    ends: Ends, axle: Array, radius: float, ways: Mapping[str, bool], *, held: bool
+) -> tuple[CoupledRow, ...]:
+    """The rows of a thin disc; ways: in which it does not slip; held: the plane pulls, too."""
     touches = touching(CouplingPart("touches", g=axle, radius=radius, **ends), held=held)
-    kinds = ("rolls_aside",) if slides else ("rolls", "rolls_aside")
-    return (touches, *(CoupledRow((CouplingPart(kind, g=axle, radius=radius, **ends),), 0.0) for kind in kinds))
+    return (
+        touches,
+        *(
+            CoupledRow((CouplingPart(kind, g=axle, radius=radius, **ends),), 0.0)
+            for way, kind in SPEEDS.items()
+            if ways[way]
+        ),
+    )
 
 
 def ball_rows(ends: Ends, radius: float, *, held: bool) -> tuple[CoupledRow, ...]:
