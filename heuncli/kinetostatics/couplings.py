@@ -67,8 +67,8 @@ class CouplingLoads:
     parts: tuple[PartLoad, ...]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
-        """What it would exert with other multipliers of all rows, (n_t, rows)."""
-        own = tuple(multipliers[:, r] for r in self.rows)
+        """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
+        own = tuple(multipliers[..., r] for r in self.rows)
         places = iter(self.parts)
         parts = tuple(
             next(places).of_multiplier(multiplier)
@@ -76,6 +76,15 @@ class CouplingLoads:
             for _ in row.parts
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
+
+    def plus(self, more: Array | None) -> CouplingLoads:
+        """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
+        if more is None:
+            return self
+        whole = np.zeros_like(more)
+        for r, multiplier in zip(self.rows, self.multipliers, strict=True):
+            whole[..., r] = multiplier + more[..., r]
+        return self.of_multipliers(whole)
 
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""

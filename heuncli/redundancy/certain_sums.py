@@ -24,8 +24,8 @@ def certain_sums(poses: Shares, asked: Shares, values: Mapping[str, Array], leng
     poses: shares where the sums must hold; asked: the same at the asked instants; values: (n_t,), of any one solution.
     length: what divides moments where they stand beside forces [m].
     """
-    force = [name for name in poses if ".force." in name]
-    moment = [name for name in poses if ".moment." in name]
+    force = [name for name in poses if is_force(name)]
+    moment = [name for name in poses if not is_force(name)]
     steady, turning = list[dict[str, float]](), list[dict[str, Array]]()
     for names in (force, moment):
         constant, left = relations({name: poses[name].ravel() for name in names})
@@ -33,7 +33,7 @@ def certain_sums(poses: Shares, asked: Shares, values: Mapping[str, Array], leng
         turning += turning_sums({name: poses[name] for name in left}, asked)
     if not steady and not turning:
         steady, left = relations({name: poses[name].ravel() for name in (*force, *moment)})
-        unit = {name: 1.0 if ".force." in name else length for name in left}
+        unit = {name: 1.0 if is_force(name) else length for name in left}
         scaled = [{name: part[name] / unit[name] for name in left} for part in (poses, asked)]
         turning = [{name: c / unit[name] for name, c in terms.items()} for terms in turning_sums(*scaled)]
     found: list[Mapping[str, float | Array]] = [*steady, *turning]
@@ -42,6 +42,11 @@ def certain_sums(poses: Shares, asked: Shares, values: Mapping[str, Array], leng
     return [
         {"terms": terms, "value": sum((c * values[name] for name, c in terms.items()), np.zeros(1))} for terms in found
     ]
+
+
+def is_force(name: str) -> bool:
+    """Whether a component is of a force, and not of a moment: `joints.a.force.x`, `couplings.mesh.force`."""
+    return "force" in name.split(".")[2:3]
 
 
 def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[str]]:

@@ -97,6 +97,23 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
         own["force"], own["moment"] = opened(own["force"], force), opened(own["moment"], moment)
 
 
+def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> None:
+    """Open components of a coupling's block, in place: of what it carries, and of what it exerts ON each body."""
+    name = "moment" if loads.coupling.rows[0].is_couple else "force"
+    length = stress.length if name == "moment" else 1.0
+    row = stress.multipliers[:, loads.rows[0]][:, None]
+    parts = {name: np.asarray(stress.reaches(row, length)[:, 0])}
+    block[name] = opened(block[name], parts[name])
+    by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
+    on = [list(own.on_bodies().values()) for own in by_stress]
+    for i, (end, own) in enumerate(block["on"].items()):
+        share = np.stack([np.concatenate(bodies[i][1:], axis=1) for bodies in on], axis=-1)
+        open_support(own, share, stress)
+        force, moment = wrench_open(stress, share)
+        parts |= {f"on.{end}.force": force, f"on.{end}.moment": moment}
+    block["open"] = names_of(parts)
+
+
 def open_in_section(
     cuts: Cuts,
     states: BodyStates,

@@ -10,8 +10,10 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.kinetostatics.joint_axes import axes_at, components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.redundancy.certain_sums import certain_sums
 from heuncli.redundancy.neighbours import neighbours
@@ -19,13 +21,14 @@ from heuncli.redundancy.open_components import (
     names_of,
     of_quantity,
     open_along,
+    open_coupling,
     open_joint,
     open_support,
     opened,
     wrench_open,
 )
 from heuncli.redundancy.self_stress import KnownStress, SelfStress, self_stress
-from heuncli.redundancy.split import Choice, split
+from heuncli.redundancy.split import Choice, chosen, split
 from heuncli.results import Array, Block, CertainSum, Indices
 
 SUMS_FROM = 9  # instants whose self-stresses certain sums are read from
@@ -43,13 +46,12 @@ class Resolution:
     stress: SelfStress | None = None
     left: SelfStress | None = None
     choices: tuple[Choice, ...] = ()
+    more: Array | None = None  # what the split adds to the multipliers of the closure rows, (n_t, rows)
     searched: SelfStress | None = None  # the search for them, also where there are none
 
-    def chosen(self, joints: list[JointLoads], states: BodyStates) -> list[JointLoads]:
-        """Other loads of the joints, as their shares by cause, after the same split."""
-        for choice in self.choices:
-            joints = choice.added(joints, states)
-        return joints
+    def chosen(self, joints: list[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array | None]:
+        """Other loads of the joints, as their shares by cause, after the same split; what it adds to multipliers."""
+        return chosen(self.choices, joints, states)
 
     def singular(self, times: Array, redundant: Array) -> list[str]:
         """Sentences on instants with more self-stresses than `redundant`, or nearly so."""
@@ -60,20 +62,23 @@ class Resolution:
         """Whether `show` marks anything."""
         return self.left is not None or bool(self.words)
 
-    def show(self, states: BodyStates, shown: Block, axes: str = "world") -> None:
-        """Mark what is open, or was until a split was chosen, in the blocks of foundation, joints, stops, in place.
+    def show(
+        self, states: BodyStates, shown: Block, couplings: Sequence[CouplingLoads] = (), axes: str = "world"
+    ) -> None:
+        """Mark what is open, or was until a split was chosen, in the blocks of all that stands or carries, in place.
 
         axes: in which the joints' loads are told.
         """
         reactions = shown.get("joints")
         if self.left is not None:
             put_verdicts(self.left, self.joints, states, shown, axes)
+            put_verdicts_on_couplings(self.left, couplings, shown)
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, states, reactions, axes)
 
-    def sums(self, runner: Runner, recovered: Recovered) -> list[CertainSum]:
+    def sums(self, runner: Runner, recovered: Recovered, couplings: Sequence[CouplingLoads] = ()) -> list[CertainSum]:
         """Certain sums of what is open."""
-        return sums_of(runner, recovered, self.joints, self.left) if self.left is not None else []
+        return sums_of(runner, recovered, self.joints, couplings, self.left) if self.left is not None else []
 
 
 def resolve(
@@ -88,8 +93,8 @@ def resolve(
     stress = self_stress(runner, recovered, states, known)
     if stress is None or not stress.count.any():
         return Resolution(joints, searched=stress)
-    chosen = split(joints, states, stress, least_norm)
-    return Resolution(chosen.joints, chosen.words, chosen.undecided, chosen.stress, chosen.choices, stress)
+    found = split(joints, states, stress, least_norm)
+    return Resolution(found.joints, found.words, found.undecided, found.stress, found.choices, found.more, stress)
 
 
 def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[str]:
@@ -141,6 +146,19 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyS
                 open_support(elements[key], of_quantity(free, drive.quantity), stress)
 
 
+def put_verdicts_on_couplings(stress: SelfStress, couplings: Sequence[CouplingLoads], shown: Block) -> None:
+    """The same of couplings, and of their loads on the ground, in place."""
+    elements = shown.get("foundation", {}).get("elements", {})
+    for loads in couplings:
+        name = loads.coupling.name
+        if name in shown.get("couplings", {}):
+            open_coupling(shown["couplings"][name], loads, stress)
+        if name in elements:
+            on = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
+            shares = [np.concatenate(own.on_bodies()[GROUND][1:], axis=1) for own in on]
+            open_support(elements[name], np.stack(shares, axis=-1), stress)
+
+
 def mark_chosen(
     stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, reactions: Block, axes: str
 ) -> None:
@@ -153,7 +171,13 @@ def mark_chosen(
             reactions[load.joint.name]["chosen"] = names
 
 
-def sums_of(runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], stress: SelfStress) -> list[CertainSum]:
+def sums_of(
+    runner: Runner,
+    recovered: Recovered,
+    joints: Sequence[JointLoads],
+    couplings: Sequence[CouplingLoads],
+    stress: SelfStress,
+) -> list[CertainSum]:
     """Certain sums of the joints' open components, true at the asked instants and in neighbouring poses."""
     pick = np.unique(np.linspace(0, len(recovered.times) - 1, SUMS_FROM).astype(int))
     near = neighbours(
@@ -178,7 +202,23 @@ def sums_of(runner: Runner, recovered: Recovered, joints: Sequence[JointLoads], 
         name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
         poses[name], asked[name] = in_poses[n], at_instants[n]
         values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
+    for loads in couplings:
+        r = loads.rows[0]
+        at = relative_multipliers(stress, r)
+        if np.abs(at).max(initial=0.0) * stress.coupled[r] <= tolerances.OPEN_SHARE:
+            continue
+        name = f"couplings.{loads.coupling.name}.{'moment' if loads.coupling.rows[0].is_couple else 'force'}"
+        picked = at[:, pick]
+        if beside is not None:
+            picked = one_after_the_other(picked, relative_multipliers(beside, r))
+        poses[name], asked[name] = picked[0], at[0]
+        values[name] = loads.multipliers[0]
     return certain_sums(poses, asked, values, stress.length)
+
+
+def relative_multipliers(stress: SelfStress, r: int) -> Array:
+    """Of every self-stress the multiplier of a closure row, relative to its largest share, (1, n_t, k)."""
+    return np.asarray(stress.multipliers[None, :, r] / np.where(stress.largest > 0.0, stress.largest, 1.0))
 
 
 def of_constraints(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates) -> SelfStress:

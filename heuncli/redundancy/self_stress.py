@@ -21,8 +21,8 @@ from heuncli.records import record
 from heuncli.response import carried, jacobian
 from heuncli.results import Array, Indices, Mask
 from heuncli.spec.sharing import same
-from heuncli.tree.islands import mean_lever
-from heuncli.tree.layout import Island
+from heuncli.tree.islands import is_couple, mean_lever
+from heuncli.tree.layout import Island, Layout
 
 
 @record
@@ -30,9 +30,9 @@ class SelfStress:
     """Self-stresses at the asked instants, k of them at most (zero where an instant has fewer).
 
     shares (n_j, n_t, 6, k): of each joint, force and moment ON `to` about the `to` point, world axes; largest (n_t, k):
-    each one's largest share, moments by `length`; count (n_t,): how many there are; dependent (n_t,): how many rows
-    depend on others, in a planar scene also those across the plane; length [m]; least, left (n_t,): the smallest
-    singular value that was kept, relative, and the largest that was not, beyond what the gap may feign.
+    each one's largest share, of couplings too, moments by `length`; count (n_t,): how many there are; dependent (n_t,):
+    how many rows depend on others, in a planar scene also those across the plane; length [m]; least, left (n_t,): the
+    smallest singular value that was kept, relative, and the largest that was not, beyond what the gap may feign.
     """
 
     shares: Array
@@ -43,6 +43,7 @@ class SelfStress:
     left: Array
     dependent: Array
     multipliers: Array  # (n_t, rows, k) of the closure rows
+    coupled: Array  # (rows,) by which a multiplier of a coupling counts as a share: 1, of a couple 1/length; else 0
 
     def reaches(self, shares: Array, length: float = 1.0) -> Mask:
         """Whether a self-stress has a share in components (..., n_t, c, k) -> (..., n_t, c); moments: give `length`."""
@@ -126,15 +127,25 @@ def stress_of(runner: Evaluator, poses: StressPoses) -> SelfStress:
     dependent = counts
     length = mean_lever(layout, range(len(layout.mechanism.joints)))
     shares = _shares(runner, poses, Z)
+    coupled = shares_of_couplings(layout, length)
     size = np.array([1.0, 1.0, 1.0, length, length, length])[:, None]
     if layout.mechanism.planar:
         # what does not exist cannot be open
         shares *= np.array([1.0, 1.0, 0.0, 0.0, 0.0, 1.0])[:, None]
         if Z.shape[2]:
-            counts = np.linalg.matrix_rank(np.concatenate(list(shares / size), axis=1), tol=tolerances.OPEN_SHARE)
+            whole = np.concatenate([*(shares / size), Z * coupled[:, None]], axis=1)
+            counts = np.linalg.matrix_rank(whole, tol=tolerances.OPEN_SHARE)
     largest = (np.abs(shares).max(axis=0, initial=0.0) / size).max(axis=1)
+    largest = np.maximum(largest, np.abs(Z * coupled[:, None]).max(axis=1, initial=0.0))
     largest = np.where(largest > tolerances.NO_SELF_STRESS, largest, 0.0)
-    return SelfStress(shares, largest, counts, length, least, left, dependent, Z)
+    return SelfStress(shares, largest, counts, length, least, left, dependent, Z, coupled)
+
+
+def shares_of_couplings(layout: Layout, length: float) -> Array:
+    """By which the multiplier of each closure row counts as a share, (rows,): joints are told by their own."""
+    own = np.array(layout.rows) >= len(layout.mechanism.joints)
+    couples = [is_couple(layout, r) for r in range(len(layout.rows))]
+    return np.where(own, np.where(couples, 1.0 / length, 1.0), 0.0)
 
 
 class Values(NamedTuple):

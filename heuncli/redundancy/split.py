@@ -26,19 +26,32 @@ class Choice:
     """Which self-stresses are added to joint loads: linear in these, so a load's shares by cause are split likewise.
 
     shares (n_j, n_t, 6, k): of the self-stresses in the joints; answers (n_t, k, 6 n_j): how much of each is added for
-    a unit of every component of the joints' wrenches.
+    a unit of every component of the joints' wrenches; multipliers (n_t, rows, k): of the self-stresses.
     """
 
     shares: Array
     answers: Array
+    multipliers: Array
 
-    def added(self, joints: Sequence[JointLoads], states: BodyStates) -> list[JointLoads]:
-        """The joint loads with the self-stresses."""
+    def added(self, joints: Sequence[JointLoads], states: BodyStates) -> tuple[list[JointLoads], Array]:
+        """The joint loads with the self-stresses, and what these add to the multipliers, (..., n_t, rows)."""
         W = np.concatenate([_wrench(j) for j in joints], axis=-1)
         c = np.einsum("tkj,...tj->...tk", self.answers, W)
-        return [
+        loads = [
             _added(j, states, np.einsum("tik,...tk->...ti", s, c)) for j, s in zip(joints, self.shares, strict=True)
         ]
+        return loads, np.einsum("trk,...tk->...tr", self.multipliers, c)
+
+
+def chosen(
+    choices: Sequence[Choice], joints: list[JointLoads], states: BodyStates
+) -> tuple[list[JointLoads], Array | None]:
+    """Joint loads after some choices, and what these add to the multipliers of the closure rows; None: nothing."""
+    more = None
+    for choice in choices:
+        joints, own = choice.added(joints, states)
+        more = own if more is None else more + own
+    return joints, more
 
 
 @record
@@ -49,6 +62,7 @@ class Split:
     """
 
     joints: list[JointLoads]
+    more: Array | None  # what they add to the multipliers of the closure rows, (n_t, rows)
     undecided: SelfStress | None
     stress: SelfStress | None
     choices: tuple[Choice, ...]
@@ -79,9 +93,8 @@ def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, leas
         choice, left = with_least_strain(left, maps)
         choices.append(choice)
         words.append(f"chosen by least norm, moments divided by {stress.length:.4g} m")
-    for choice in choices:
-        joints = choice.added(joints, states)
-    return Split(joints, undecided, left, tuple(choices), tuple(words))
+    joints, more = chosen(choices, joints, states)
+    return Split(joints, more, undecided, left, tuple(choices), tuple(words))
 
 
 def stiffness_map(load: JointLoads, states: BodyStates) -> Array:
@@ -109,7 +122,7 @@ def with_least_strain(stress: SelfStress, maps: Sequence[Array]) -> tuple[Choice
     inverse = np.where(strained, 1.0 / np.where(strained, sigma, 1.0), 0.0)
     answers = -(V.transpose(0, 2, 1) * inverse[:, None, :]) @ U.transpose(0, 2, 1) / size[:, :, None]
     answers = np.concatenate([answers[:, :, 6 * n : 6 * n + 6] @ m for n, m in enumerate(maps)], axis=2)
-    choice = Choice(stress.shares, answers)
+    choice = Choice(stress.shares, answers, stress.multipliers)
     # what strains nothing: the self-stresses' part outside the rows of V that strain something
     rest = np.eye(S.shape[2]) - np.einsum("tki,tk,tkj->tij", V, strained.astype(float), V)
     return choice, part_of(stress, rest, stress.count - strained.sum(axis=1))
@@ -124,9 +137,11 @@ def part_of(stress: SelfStress, part: Array, count: Array) -> SelfStress | None:
     of_unit = np.einsum("tij,tj->tij", part, alive.astype(float)) / size[:, :, None]
     shares = np.stack([np.einsum("tik,tkj->tij", s, of_unit) for s in stress.shares])
     parts = [np.maximum(np.abs(s[:, :3]).max(axis=1), np.abs(s[:, 3:]).max(axis=1) / stress.length) for s in shares]
-    largest = np.max(parts, axis=0)
+    multipliers = np.einsum("trk,tkj->trj", stress.multipliers, of_unit)
+    coupled = np.abs(multipliers * stress.coupled[:, None]).max(axis=1, initial=0.0)
+    largest = np.maximum(np.max(parts, axis=0), coupled)
     largest = np.where(largest > tolerances.STILL_OPEN, largest, 0.0)
-    found: SelfStress = replace(stress, shares=shares, largest=largest, count=count)
+    found: SelfStress = replace(stress, shares=shares, largest=largest, count=count, multipliers=multipliers)
     return found
 
 
@@ -146,6 +161,7 @@ def together(a: SelfStress | None, b: SelfStress | None) -> SelfStress | None:
     both: SelfStress = replace(
         a, shares=np.concatenate([a.shares, b.shares], axis=3), count=a.count + b.count,
         largest=np.concatenate([a.largest, b.largest], axis=1),
+        multipliers=np.concatenate([a.multipliers, b.multipliers], axis=2),
     )  # fmt: skip
     return both
 

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.conversion.mjcf.closings import Closings, Coupling
+from heuncli.conversion.mjcf.closings import Closings, JointEquality
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.tree import COORDINATE, JointTree
 from heuncli.named_tuples import NamedTuple
@@ -29,7 +29,7 @@ class HeldJoints(NamedTuple):
     """joints: the numbers of those that are held, in MuJoCo's order; followed: the couplings that hold others."""
 
     joints: tuple[int, ...]
-    followed: tuple[Coupling, ...]
+    followed: tuple[JointEquality, ...]
 
 
 def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> HeldJoints:
@@ -43,7 +43,7 @@ def held(c: Compiled, tree: JointTree, closings: Closings, q: Any) -> HeldJoints
         couplings.remove(idle)
 
 
-def _held(c: Compiled, tree: JointTree, closings: Closings, couplings: list[Coupling], q: Any) -> tuple[int, ...]:
+def _held(c: Compiled, tree: JointTree, closings: Closings, couplings: list[JointEquality], q: Any) -> tuple[int, ...]:
     slaves = {coupling.slave for coupling in couplings}
     movable = [joint for joint, step in tree.of_joint.items() if step.kind in COORDINATE]
     joints = [joint for joint in movable if joint not in slaves]
@@ -57,7 +57,7 @@ def _held(c: Compiled, tree: JointTree, closings: Closings, couplings: list[Coup
     return tuple(sorted(order[k] for k in _independent(_rows(c, carried, q), dofs)))
 
 
-def _without_leader(couplings: list[Coupling], joints: tuple[int, ...]) -> Coupling | None:
+def _without_leader(couplings: list[JointEquality], joints: tuple[int, ...]) -> JointEquality | None:
     """The first coupling that leads back to no joint that is held; None where all do."""
     led: set[int | None] = {None, *joints}
     left = couplings

@@ -13,7 +13,7 @@ from typing import Any
 
 from heuncli.conversion.asked import ImportAsked
 from heuncli.conversion.described import DescribedEntry, DescribedParameter
-from heuncli.conversion.mjcf.closings import Coupling, left_out, moved
+from heuncli.conversion.mjcf.closings import JointEquality, left_out, moved
 from heuncli.conversion.mjcf.compiled import Compiled
 from heuncli.conversion.mjcf.holding import HeldJoints
 from heuncli.conversion.mjcf.tree import COORDINATE, RATE, JointTree, TreeStep
@@ -41,7 +41,7 @@ class _Making:
     """The laws of one model while they are made; laws: of the joints of MuJoCo's, in its coordinates."""
 
     def __init__(
-        self, c: Compiled, tree: JointTree, idle: tuple[Coupling, ...], q: Any, qd: Any, asked: ImportAsked
+        self, c: Compiled, tree: JointTree, idle: tuple[JointEquality, ...], q: Any, qd: Any, asked: ImportAsked
     ) -> None:
         self.c, self.steps, self.q, self.qd, self.asked = c, tree.of_joint, q, qd, asked
         self.idle = idle
@@ -76,7 +76,7 @@ class _Making:
         low, high = (float(limit) for limit in model.jnt_range[joint])
         return min(max(value, low), high)
 
-    def follow(self, coupling: Coupling) -> None:
+    def follow(self, coupling: JointEquality) -> None:
         """A joint that follows another, by the law of that one."""
         c, step = self.c, self.steps[coupling.slave]
         if self.asked.free:
@@ -109,7 +109,7 @@ class _Making:
             DescribedEntry(f"hold_{step.name}", {"joint": step.name, COORDINATE[step.kind]: law}, remark)
         )
 
-    def argument(self, coupling: Coupling) -> str | None:
+    def argument(self, coupling: JointEquality) -> str | None:
         """What a coupling is a polynomial of, its leader's way from the zero; empty: of nothing; None: unknown."""
         if coupling.master is None:
             return ""
@@ -132,7 +132,7 @@ def laws_of(
     c: Compiled,
     tree: JointTree,
     held: HeldJoints,
-    couplings: tuple[Coupling, ...],
+    couplings: tuple[JointEquality, ...],
     q: Any,
     qd: Any,
     asked: ImportAsked,
@@ -168,7 +168,7 @@ def value_text(step: TreeStep, value: float) -> str:
     return f"{number_text(degrees)} deg" if exact else f"{number_text(value)} rad"
 
 
-def _in_order(couplings: tuple[Coupling, ...]) -> list[Coupling]:
+def _in_order(couplings: tuple[JointEquality, ...]) -> list[JointEquality]:
     """Those that are followed before those that follow; of a circle those that are left over come last."""
     waiting, order = list(couplings), []
     slaves = {coupling.slave for coupling in waiting}

@@ -55,7 +55,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     for load in recovery.asked_joints if axes != "world" and "joints" in shown else ():
         put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
     if shown and recovery.decided is not None:
-        recovery.decided.show(states, shown, axes)
+        recovery.decided.show(states, shown, recovery.couplings, axes)
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:

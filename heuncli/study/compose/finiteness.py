@@ -18,8 +18,8 @@ from heuncli.results_schema import BLOWS, REPORT_OF, SPACE, Quantity, quantity
 
 # where a number may be none: loads that supports leave open, the axis or line of a wrench that has none
 MAY_BE_NONE = (
-    "joints.JOINT.", "stops.", "sections.", "foundation.supports.", "foundation.elements.", "foundation.axis.",
-    "bodies.BODY.rodrigues",
+    "joints.JOINT.", "stops.", "couplings.", "sections.", "foundation.supports.", "foundation.elements.",
+    "foundation.axis.", "bodies.BODY.rodrigues",
 )  # fmt: skip
 BLOCKS = ("time", *REPORT_OF, BLOWS, "events", "certain_sums", "accuracy")  # causes before what follows from them
 NumericLeaves = Iterator[tuple[tuple[str, ...], Any, Mapping[str, Any]]]

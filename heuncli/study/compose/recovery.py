@@ -130,7 +130,8 @@ class Recovery:
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
         """What couplings exert."""
-        return coupling_loads(self.setup.scene.layout, self.recovered)
+        more = self.decided.more if self.decided is not None else None
+        return [own.plus(more) for own in coupling_loads(self.setup.scene.layout, self.recovered)]
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
@@ -159,7 +160,8 @@ class Recovery:
         found = shares_of(layout, self.recovered, self.states, self.applied, members)
         if self.decided is None:
             return found
-        return replace(found, joints=self.decided.chosen(found.joints, self.states))
+        joints, more = self.decided.chosen(found.joints, self.states)
+        return replace(found, joints=joints, couplings=[own.plus(more) for own in found.couplings])
 
     @property
     def applied(self) -> list[Action]:
@@ -236,4 +238,4 @@ def certain_sums(recovery: Recovery) -> list[CertainSum]:
     """Sums of indeterminate components that are determined."""
     if recovery.decided is None:
         return []
-    return recovery.decided.sums(recovery.setup.runner, recovery.recovered)
+    return recovery.decided.sums(recovery.setup.runner, recovery.recovered, recovery.couplings)

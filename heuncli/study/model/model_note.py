@@ -86,6 +86,7 @@ def grubler(mechanism: Mechanism) -> int:
     rows = sum(kind.rows_in_plane if mechanism.planar else kind.rows for kind in kinds)
     # a driven distance is held anyway
     drives = sum(1 for j in mechanism.joints if j.drive is not None and not JOINTS[j.kind].keeps_distance)
+    rows += sum(len(coupling.rows) for coupling in mechanism.couplings)
     return (3 if mechanism.planar else 6) * len(mechanism.bodies) - rows - drives
 
 
@@ -98,6 +99,9 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
         sentences.append(f"closed at {some(cut)}; the other joints make the tree that carries the motion")
+    coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings]
+    if coupled:
+        sentences.append(f"coupled: {some(coupled)}")
     driven = [j.name for j in mechanism.joints if j.drive is not None]
     if driven:
         sentences.append(f"driven: {some(driven)}")
@@ -144,4 +148,10 @@ def held_twice(layout: Layout, stress: SelfStress) -> list[str]:
         names = [f"{'F' if i < 3 else 'M'}{'xyz'[i % 3]}" for i in range(6) if parts[i] > tolerances.OPEN_SHARE]
         if names:
             notes.append(f"held more than once: {joint.name} {', '.join(names)}")
+    for r, owner in enumerate(layout.rows):
+        size = np.where(stress.largest > 0.0, stress.largest, 1.0)
+        unit = stress.length if layout.tables["closures"]["measure"][r] != 1.0 else 1.0
+        share = np.abs(stress.multipliers[:, r] / size).max(initial=0.0) / unit
+        if owner >= len(layout.mechanism.joints) and share > tolerances.OPEN_SHARE:
+            notes.append(f"held more than once: {layout.mechanism.owner(owner)}")
     return notes
