@@ -187,6 +187,11 @@ ROWS: tuple[Quantity, ...] = (
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
     *at("couplings.COUPLING", "the load that the coupling carries", scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING", "of a wheel: what the plane presses it with, and what keeps it from slipping, in all, "
+        "along its track and along its axle's shadow on the plane, ON the wheel",
+        scalar("normal", "N"), scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
+    *at("couplings.COUPLING", "of a wheel with a coefficient of friction, coefficient · normal − friction: it slips "
+        "where that is below zero", scalar("grip", "N")),
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),

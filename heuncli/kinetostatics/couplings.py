@@ -13,7 +13,6 @@ import numpy as np
 from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -129,13 +128,3 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         for own in couplings
         for part in own.parts
     ]
-
-
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
-    on = {
-        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
-    }
-    carried = "moment" if loads.coupling.rows[0].is_couple else "force"
-    return {carried: loads.multipliers[0], "on": on, "open": []}

@@ -54,9 +54,9 @@ def wheel(given: c.Wheel, of: Numbered) -> tuple[CoupledRow, ...]:
         "e": unit(given.normal),
     }  # fmt: skip
     if given.axis is None:
-        return ball_rows(ends, given.radius, held=given.held)
+        return ball_rows(ends, given.radius)
     way = {"along": not given.slides, "aside": not of.planar}  # in the plane nothing goes aside
-    return disc_rows(ends, unit(given.axis), given.radius, way, held=given.held)
+    return disc_rows(ends, unit(given.axis), given.radius, way)
 
 
 MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {"ratio": ratio, "wheel": wheel}

@@ -11,13 +11,16 @@ from typing import Literal
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.records import record, replace
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import couplings as spec
 
 GROUND = -1
 Place = Array | tuple[float, float, float]
 NOWHERE = (0.0, 0.0, 0.0)
+CouplingKind = Literal[
+    "guide", "dot", "rod", "turn", "mesh", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls"
+]  # fmt: skip
 
 
 class Coordinate(NamedTuple):
@@ -36,9 +39,7 @@ class CouplingPart:
     its gap is counted by, of a turn one, of a mesh one or two. radius: of a wheel.
     """
 
-    kind: Literal[
-        "guide", "dot", "rod", "turn", "mesh", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls"
-    ]  # fmt: skip
+    kind: CouplingKind
     a: int
     b: int
     p: Array | tuple[float, float, float] = NOWHERE
@@ -49,10 +50,6 @@ class CouplingPart:
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
     radius: float = 0.0
-
-    def times(self, factor: float) -> CouplingPart:
-        """The same, taken so many times."""
-        return replace(self, factor=factor)
 
     @property
     def holds_speed(self) -> bool:

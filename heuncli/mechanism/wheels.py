@@ -1,7 +1,8 @@
 """A wheel as the conditions that it holds: that it touches its plane, and that it does not slip along it, or aside.
 
-The first holds a pose, the others a speed. Multipliers are the forces ON the wheel: along the plane's normal (with the
-opposite sign where the wheel may lift, for it then only presses), along its track, along its axle's shadow.
+The first holds a pose, the others a speed. Multipliers are the forces ON the wheel: along the plane's normal, along its
+track, along its axle's shadow on the plane. That a plane only presses is watched for (spec/resolve_couplings.py): of
+more wheels than it takes nothing tells what each of them bears.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Literal, TypedDict
 
 import numpy as np
 
-from heuncli.mechanism.couplings import CoupledRow, CouplingPart, Place
+from heuncli.mechanism.couplings import CoupledRow, CouplingKind, CouplingPart, Place
 from heuncli.results import Array
 from heuncli.shapes.rotations import perpendicular
 
@@ -30,30 +31,14 @@ class Ends(TypedDict):
     e: Place
 
 
-def disc_rows(
-    ends: Ends, axle: Array, radius: float, ways: Mapping[str, bool], *, held: bool
-) -> tuple[CoupledRow, ...]:
-    """The rows of a thin disc; ways: in which it does not slip; held: the plane pulls, too."""
-    touches = touching(CouplingPart("touches", g=axle, radius=radius, **ends), held=held)
-    return (
-        touches,
-        *(
-            CoupledRow((CouplingPart(kind, g=axle, radius=radius, **ends),), 0.0)
-            for way, kind in SPEEDS.items()
-            if ways[way]
-        ),
-    )
+def disc_rows(ends: Ends, axle: Array, radius: float, ways: Mapping[str, bool]) -> tuple[CoupledRow, ...]:
+    """The rows of a thin disc; ways: in which it does not slip."""
+    kinds: list[CouplingKind] = ["touches", *(kind for way, kind in SPEEDS.items() if ways[way])]
+    return tuple(CoupledRow((CouplingPart(kind, g=axle, radius=radius, **ends),), 0.0) for kind in kinds)
 
 
-def ball_rows(ends: Ends, radius: float, *, held: bool) -> tuple[CoupledRow, ...]:
+def ball_rows(ends: Ends, radius: float) -> tuple[CoupledRow, ...]:
     """The rows of a sphere, whose lowest point touches the plane and stands still on it."""
-    touches = touching(CouplingPart("ball_touches", g=ends["e"], radius=radius, **ends), held=held)
-    across = perpendicular(np.asarray(ends["e"]))
-    return (touches, *(CoupledRow((CouplingPart("ball_rolls", g=g, radius=radius, **ends),), 0.0) for g in across))
-
-
-def touching(part: CouplingPart, *, held: bool) -> CoupledRow:
-    """The row of a contact; one that may lift is as that of a rope: its multiplier is never above zero."""
-    if held:
-        return CoupledRow((part,), 0.0)
-    return CoupledRow((part.times(-1.0),), 0.0, tension_only=True)
+    touches = CouplingPart("ball_touches", g=ends["e"], radius=radius, **ends)
+    rolls = (CouplingPart("ball_rolls", g=g, radius=radius, **ends) for g in perpendicular(np.asarray(ends["e"])))
+    return tuple(CoupledRow((part,), 0.0) for part in (touches, *rolls))

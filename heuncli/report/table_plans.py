@@ -150,7 +150,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment"),
+    ("normal", "friction", "along", "aside", "grip", "force", "moment"),
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

@@ -344,7 +344,8 @@ class Condition(NamedTuple):
 class ResultCondition(NamedTuple):
     """What is watched for in the results: the number at the path `of` is below the limit, or above it.
 
-    text: as written. ends: whether the motion ends where it becomes true.
+    text: as written. ends: whether the motion ends where it becomes true. why: of one that an entry brings with it, as
+    wheels do, what it then means, in words.
     """
 
     name: str
@@ -353,6 +354,7 @@ class ResultCondition(NamedTuple):
     of: str
     limit: float
     above: bool
+    why: str = ""
 
 
 WatchedCondition = Condition | ResultCondition

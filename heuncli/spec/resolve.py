@@ -20,7 +20,7 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import meant, wheel_meant
+from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
 from heuncli.spec.turns import IDENTITY
 
@@ -104,7 +104,7 @@ class Resolver:
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
-            self.conditions(analysis),
+            (*self.conditions(analysis), *(conditions_of_wheels(self.document.rolling) if kind == "motion" else ())),
             analysis.tolerance is not None,
         )  # fmt: skip
 
