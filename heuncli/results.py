@@ -107,6 +107,10 @@ class ForceBlock(TypedDict, total=False):
     angle: Array
     rate: Array
     power: Array
+    shift: Array
+    turn: Array
+    force: Array
+    moment: Array
 
 
 class Work(TypedDict, total=False):

@@ -195,6 +195,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),
+    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),
@@ -222,6 +223,10 @@ ROWS: tuple[Quantity, ...] = (
         scalar("value", "N | N·m")),
     *at("forces.FORCE", "distance of its two points", scalar("length", "m")),
     *at("forces.FORCE", "of a turn_spring", scalar("angle", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: how far its `to` point has shifted, and its `to` body turned",
+        vector("shift", "m"), vector("turn", "rad")),
+    *at("forces.FORCE", "of a bushing, in its axes: what it exerts ON `to`, at its `to` point",
+        vector("force", "N"), vector("moment", "N·m")),
     *at("forces.FORCE", "at which its points part, or its joint moves", scalar("rate", "m/s | rad/s")),
     *at("forces.FORCE", "that it puts into the bodies", scalar("power", "W")),
     *at("energy", "kinetic + potential − work is constant",
@@ -397,7 +402,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     Shares by cause have their own: they may be larger than what they add up to, and err by more.
     """
     whole, by_cause, _ = f".{name}".rpartition(f".{SHARES}.")
-    if by_cause and kind in SHARED:
+    if by_cause and kind in SHARED | {"couplings"}:
         return f"{kind_of_error(kind, whole.removeprefix('.'), number.removeprefix('direct_'))} {BY_CAUSE}"
     if kind == "joints" and number == "drive":
         return "drives"
@@ -406,7 +411,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "angle", "rate") else "forces"
+        return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
     if number.startswith("energy_"):
         return "energy"
     return ESTIMATES.get(kind, "motion")

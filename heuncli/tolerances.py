@@ -27,6 +27,10 @@ SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a 
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
+# -- couplings: what of a drawing decides whether gears fit
+TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
+TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
+
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
 NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
 OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
@@ -70,6 +74,9 @@ ORDERS_SETTLED = (
 # -- coordinates of Lagrange's equations
 TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
+# [rad] of what a bushing bears: at half a turn its moment jumps to the other side, and which side it is on is known to
+# the error of a run, which is a thousandth of this where nobody asks for more
+LARGEST_TURN = 3.141592653589793 - 1e-6
 HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
 
 # -- no inertia
@@ -132,7 +139,13 @@ OFF_AXIS = 2e-15  # sine of a normal to a body of revolution's axis: rounding of
 EQUAL_COMPONENTS = (
     1e-9  # of a unit normal: equal ones, of which x goes before y before z (manual/format.md, "Sections")
 )
+MESH_DIGITS = 2.0**-21  # of the largest coordinate: eight steps of a float32, which is what files of meshes hold
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
+OUTLINE_PRINCIPAL = 1e-4  # the same of a mesh: its corners have the digits of a float32, its arcs are chords
+OUTLINE_SYMMETRIC = (
+    1e-3  # of the area times the cube of its extent: third moments of an outline that is the same turned by
+)
+# 180 degrees; as chords of arcs leave, while a channel has some 1e-2
 PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by less than that over 1 - I1/I2
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
 

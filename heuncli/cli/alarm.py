@@ -28,7 +28,7 @@ PHASES = (
     ("heuncli.redundancy.advice", "while advice on what is redundant was sought"),
     ("heuncli.integration.check.singular_poses", "while singular poses were searched"),
     ("heuncli.expressions.discontinuities", "while jumps in time were searched"),
-    ("heuncli.integration.run.conditions", "while events were searched"),
+    ("heuncli.integration.conditions", "while events were searched"),
     ("heuncli.integration.check.changes", "while events were searched"),
     ("heuncli.study.ask.events", "while events were searched"),
     ("heuncli.integration.check.estimate", "while the motion was integrated and checked"),

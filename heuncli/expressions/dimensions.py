@@ -35,8 +35,9 @@ class Measure(NamedTuple):
 FREE = Measure("free")
 FACTOR = Measure("factor")
 WHOLE = Measure("factor", literal=True)
-COORDINATES = {  # of joints, and of points
+COORDINATES = {  # of joints, of points, of loads
     "angle": NUMBER, "rate": RATE, "travel": LENGTH, "speed": VELOCITY,
+    "length": LENGTH, "deflection": LENGTH, "turn": NUMBER,  # of what a load acts between
     **dict.fromkeys("xyz", LENGTH), **dict.fromkeys(("vx", "vy", "vz"), VELOCITY),
 }  # fmt: skip
 OF_TIME = Measure("loose", TIME, moving=True)

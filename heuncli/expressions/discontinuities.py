@@ -73,9 +73,21 @@ def jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, f
 
 def first_not_positive(value: Expression, last: float) -> float | None:
     """The first of many instants of a run, those beside jumps and kinks among them, at which a value is not above 0."""
+    return next((t for t in looked_at(value, last) if value.value(t) <= 0.0), None)
+
+
+def first_negative(value: Expression, last: float) -> float | None:
+    """The first of the same instants at which a value is below 0 by more than rounding."""
+    seen = [(t, value.value(t)) for t in looked_at(value, last)]
+    rounding = tolerances.SAME_VALUE * max((abs(x) for _, x in seen), default=0.0)
+    return next((t for t, x in seen if x < -rounding), None)
+
+
+def looked_at(value: Expression, last: float) -> list[float]:
+    """Many instants of a run, those beside jumps and kinks among them."""
     grid = {last * k / LOOKED_AT for k in range(LOOKED_AT + 1)}
     grid.update(t for pair in changes(value, last) for t in pair)
-    return next((t for t in sorted(grid) if value.value(t) <= 0.0), None)
+    return sorted(grid)
 
 
 def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> list[float]:

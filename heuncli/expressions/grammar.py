@@ -20,7 +20,7 @@ from heuncli.expressions.calculations import Calculations
 from heuncli.expressions.codegen import COMPARISONS, MOST_NODES, Codegen, Part
 from heuncli.expressions.dimensions import FACTOR, FREE, known, loose, of_literal, raised
 from heuncli.expressions.point_names import FORM, point_meant
-from heuncli.expressions.programs import POINTS, Expression, TableFunction
+from heuncli.expressions.programs import OWN, POINTS, Expression, TableFunction
 from heuncli.expressions.tokens import tokens_of
 from heuncli.expressions.units import RATE, UNITS, Dimension, describe, in_si, parse_unit, spelling_of
 from heuncli.joint_kinds import RATES, TYPES
@@ -56,7 +56,7 @@ OTHER_NAMES = {  # what people write who come from elsewhere
     "heaviside": "step", "time": "t", "PI": "pi", "Pi": "pi", "π": "pi", "degrees": "deg", "pow": "**", "sqr": "**2",
     "interp": "table(NAME, ...)", "lookup": "table(NAME, ...)", "spline": "table(NAME, ...)",
 }  # fmt: skip
-LOADS = SHARED | {"stops"}  # blocks of the results that are found from the motion
+LOADS = SHARED | {"stops", "couplings"}  # blocks of the results that are found from the motion
 REACTIONS = frozenset(
     row.path.split(".")[2]
     for row in ROWS
@@ -78,7 +78,8 @@ class Scope:
     joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
     only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
-    calculations: numbers of parameters alone that were read before, in a spec whose names are the same.
+    calculations: numbers of parameters alone that were read before, in a spec whose names are the same. own: what of the
+    load itself a name means, as `length` of a spring's line: its quantity.
     """
 
     parameters: Mapping[str, float | None] = NONE
@@ -89,6 +90,7 @@ class Scope:
     points: Mapping[str, Collection[str]] = NONE
     with_units: bool = False
     calculations: Calculations | None = None
+    own: Mapping[str, str] = NONE
 
 
 FIXED = "this one is read once, before the run: give it as a number or by parameters"
@@ -540,6 +542,11 @@ class _Parser:
         return self.codegen.coordinate(f"{POINTS}.{body}.{point}", quantity)
 
     def name(self, name: str) -> Part:
+        if name in self.scope.own:
+            if name in self.scope.parameters:
+                message = f"'{name}' is a parameter, and here what the load itself stands between"
+                raise Finding("unknown-name", message, "give the parameter another name")
+            return self.codegen.coordinate(OWN, self.scope.own[name])
         if name in self.scope.parameters:
             value = self.scope.parameters[name]
             if value is None:
@@ -569,6 +576,8 @@ class _Parser:
         is_near = near is not None and near.lower() == name.lower()
         if not is_near and kind == "parameter" and (unit := in_si("", name)) is not None:
             return Finding("unknown-name", message, f"as in 20 {name}" if self.scope.with_units else unit)
+        if kind == "parameter" and self.scope.own and near is None:
+            return Finding("unknown-name", message, f"of the load itself: {', '.join(self.scope.own)}")
         listed = self.scope.parameters if kind == "parameter" else sorted(ARITY)
         hint = f"did you mean {near}?" if near else did_you_mean(name, listed, f"{kind}s")
         return Finding("unknown-name", message, hint)

@@ -21,6 +21,8 @@ INTEGRAL = OPS["integral"]
 
 TIME = "t"
 Variable = str | tuple[str, str]  # the time, or (joint, quantity)
+OWN = "own"  # what a load acts between, until it is told which load that is
+LOADS = "forces"  # begins the name of a load in `uses`, as in forces.buffer
 POINTS = "points"  # begins the name of a point, as in points.drill.bit
 Code = tuple[int, ...]  # pairs (operation, argument), one after another
 
@@ -28,6 +30,11 @@ Code = tuple[int, ...]  # pairs (operation, argument), one after another
 def is_of_point(name: str) -> bool:
     """Whether it is a point's name in `uses`, and not a joint's."""
     return name.startswith(f"{POINTS}.")
+
+
+def is_of_load(name: str) -> bool:
+    """Whether it is a load's name in `uses`."""
+    return name.startswith(f"{LOADS}.")
 
 
 @record
@@ -71,7 +78,8 @@ class Expression:
     """A number that may depend on time and on coordinates of joints; SI.
 
     constant is its value when it depends on neither. uses lists the coordinates, as (joint, quantity) with quantity one
-    of angle, rate, travel, speed, or (points.BODY.POINT, quantity) with one of x, y, z, vx, vy, vz. code refers to
+    of angle, rate, travel, speed, or (points.BODY.POINT, quantity) with one of x, y, z, vx, vy, vz, or (forces.LOAD,
+    quantity) with one of length, speed, shift_x, ... turn_z. code refers to
     constants, tables, and to variables: 0 is t, 1 + i is uses[i].
     held says for each branch in coordinates, by the number of its HOLD instruction, what it is a branch of.
     """

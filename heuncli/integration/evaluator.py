@@ -38,7 +38,7 @@ class Recovered:
     pivot: Array  # square of the least pivot of the independent closure rows; 1: far from singular
     residual: Array  # of all rows, J Vdot + gamma at the accelerations found, of the terms it is the sum of
     may_stay: Array  # what of it rows may keep that were left out as dependent
-    holding: Array  # (n_t, contacts): 0 open, 1 closed, also where others close it
+    holding: Array  # (n_t, contacts and places): 0 open, 1 closed, also where others close it (Layout.closed)
     causes: Columns | None = None  # (n_t, n_c): each row of the table of loads alone, then CAUSES; their sum is all
 
     @property
@@ -112,9 +112,9 @@ class Evaluator:
         at = np.ascontiguousarray(times, dtype=float)
         settled = np.array(states, dtype=float, order="C").reshape(n_t, layout.n_state)
         held = np.zeros((n_t, 0)) if branches is None else np.ascontiguousarray(branches, dtype=float)
-        closed = np.zeros((n_t, len(layout.contacts)))
+        closed = np.zeros((n_t, len(layout.all_open)))
         # what others close is closed as much: which of all carry is a matter of rank here, and of verdicts
-        closed[:] = (self.start_holding if holding is None else holding) > 0.0
+        closed[:] = layout.closed(self.start_holding if holding is None else holding)
         given = {"times": at, "branches": held, "holding": closed}
         answers = {"states": settled, "columns": columns, **{name: as_numbers(table) for name, table in told.items()}}
         self._recover(given, answers, hold_rows, causes)

@@ -46,6 +46,7 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     at = put(out, at, load.moment)
     at = put(out, at, load.at)
     at = put(out, at, load.from_at)
+    at = put(out, at, load.strain)
     out[at] = load.value
     out[at + 1] = load.span
     out[at + 2] = load.rate
@@ -129,6 +130,19 @@ def recover_state(
     return idle
 
 
+def put_measured(
+    scene: cython.pointer[Scene], bodies: cython.p_double, gaps: cython.p_double, rates: cython.p_double
+) -> cython.void:
+    """All bodies, as `put_body`, and gap and rate of each closure row, as they stand: nothing is settled."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for i in range(scene.body_count):
+        at = put_body(bodies, at, cython.address(scene.bodies[i]))
+    for i in range(scene.closure_count):
+        gaps[i] = scene.closures[i].gap
+        rates[i] = scene.closures[i].rate
+
+
 def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
     """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
     measure_rows(scene, t)
@@ -143,7 +157,8 @@ def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.voi
 def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
     """Open and close the contacts by the numbers from `at`; whether that is a change.
 
-    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it.
+    Of each contact 0 where it is open, 1 where it is closed, 2 where others close it, -1 where it is open, but a latch
+    holds it at its limit, so that it is not looked at. Behind them, of each latch, the length at which it holds.
     """
     i: cython.Py_ssize_t
     k: cython.Py_ssize_t
@@ -153,11 +168,15 @@ def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cyt
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         if contact.opens:
             k = at + contact.opens - 1
-            mode = APART
-            if holding[k] > 0.0:
-                mode = CARRIES if holding[k] < 1.5 else LEANS
+            mode = APART if holding[k] == 0.0 else LEANS
+            if holding[k] > 0.0 and holding[k] < 1.5:
+                mode = CARRIES
             changed = changed or scene.closures[contact.row].mode != mode
             scene.closures[contact.row].mode = mode
+            if contact.held_at:
+                k = at + contact.held_at - 1
+                changed = changed or scene.closures[contact.row].length != holding[k]
+                scene.closures[contact.row].length = holding[k]
     if changed:  # multipliers are found for the rows that carry; of the others they are 0
         for i in range(scene.closure_count):
             scene.closures[i].multiplier = 0.0

@@ -147,7 +147,7 @@ def set_levels(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
         contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
         row: cython.pointer[Closure] = cython.address(scene.closures[contact.row])
         contact.level = 1e300  # no doubt
-        if row.mode == LEANS:
+        if row.mode == LEANS or contact.sense == 0:
             continue
         size = (scene.size + norm(row.Q)) / row.weight + fabs(row.length)
         reach = scene.limits.touching * size

@@ -35,6 +35,7 @@ if not cython.compiled:
         sub,
         transform,
     )
+    from heuncli.kernel.bushings import bushing_energy
     from heuncli.kernel.carried_points import place_of
     from heuncli.kernel.columns import apply_none, prescribe, stand_still
     from heuncli.kernel.course import set_time
@@ -48,7 +49,7 @@ if not cython.compiled:
     from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import Bounds, Jet, Program
     from heuncli.kernel.response import evaluate, respond, settle
-    from heuncli.kernel.scene import SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
+    from heuncli.kernel.scene import BUSHING_SHIFT, SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Method, Run
@@ -338,6 +339,8 @@ def mechanical_energy(scene: cython.pointer[Scene]) -> cython.double:
         elif load.kind == TURN_SPRING:
             stretch = turned_by(scene, load) - load.length
             found += 0.5 * load.stiffness * stretch * stretch
+        elif load.kind >= BUSHING_SHIFT:
+            found += bushing_energy(scene, load)
     return found
 
 

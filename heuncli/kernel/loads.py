@@ -14,9 +14,11 @@ if not cython.compiled:
     from math import atan2, tanh
 
     from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
+    from heuncli.kernel.bushings import bushing_load
     from heuncli.kernel.evaluator import value
     from heuncli.kernel.scene import (
         ACTUATOR,
+        BUSHING_SHIFT,
         COUPLE,
         FORCE,
         SHIFT_DAMPER,
@@ -52,6 +54,9 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
             power += load.power
         elif load.kind == SPRING or load.kind == ACTUATOR:
             power += pair_load(scene, load, given, there.v)
+        elif load.kind >= BUSHING_SHIFT:
+            shifts: cython.bint = load.kind == BUSHING_SHIFT
+            power += bushing_load(scene, load, given, motion_in(scene, load, there.v, shifts))
         else:
             power += joint_load(scene, load, given, there.v)
     return power
@@ -123,7 +128,7 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
-    motion: Vec3 = sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
+    motion: Vec3 = motion_in(scene, load, v, slides)
     acts: Vec3
     load.rate = dot(motion, axis)
     if load.kind <= TURN_SPRING:
@@ -139,9 +144,11 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
             load.rate = speed  # of motions about or along no one axis: how fast
         against: cython.double = load.coefficient
         if load.kind >= TURN_FRICTION:
-            against = load.coefficient / load.speed  # what it comes to at rest, as a slope
+            if not load.presses:
+                load.pressed = given.x
+            against = load.coefficient * given.x / load.speed  # what it comes to at rest, as a slope
             if speed > 0.0:
-                against = load.coefficient * tanh(speed / load.speed) / speed
+                against = load.coefficient * given.x * tanh(speed / load.speed) / speed
         load.value = -against * load.rate
         load.power = -against * speed * speed
         acts = scaled(-against, motion)
@@ -178,6 +185,11 @@ def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cytho
     while angle - counter.counted > half:
         angle -= 2.0 * half
     return angle
+
+
+def motion_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint) -> Vec3:
+    """Velocity of b's point, which moves with v, or angular velocity of b, as seen from a."""
+    return sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
 
 
 def sliding_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3) -> Vec3:

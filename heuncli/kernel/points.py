@@ -9,7 +9,8 @@ A is bounded from the roots to the tips by magnitudes alone, of the freedoms' ra
     Omega = Omega_p + sum |u|,   Alpha = Alpha_p + sum (|udot| + Omega |u|)
     A = A_p + (Alpha_p + Omega_p^2) l + 2 Omega_p w + wdot       at the joint point, l: the arm, w: the shifts' speed
 
-so that parts are told apart as closely as they are divided, whatever turns in them. Points at an instant are those of
+so that parts are told apart as closely as they are divided, whatever turns in them. What loads act between hangs on two
+bodies (load_ranges). Points at an instant are those of
 the state there, exactly; they are looked at on bodies of their own, for those of the scene may be in use.
 """
 
@@ -28,8 +29,9 @@ if not cython.compiled:
     from heuncli.kernel.bernstein import differentiate, of_rows, range_of
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything, magnitude
+    from heuncli.kernel.load_ranges import acceleration_of, between, load_at_end, range_of_load
     from heuncli.kernel.programs import Bounds, Jet, Span
-    from heuncli.kernel.scene import SHIFT, Body, Freedom, PointMotion, Scene, Variable
+    from heuncli.kernel.scene import OF_LOAD, SHIFT, Body, Freedom, Load, PointMotion, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Orbits, Run
     from heuncli.kernel.tree import coordinates, kinematics, point_of
@@ -80,10 +82,18 @@ def turned_far(scene: cython.pointer[Scene], length: cython.double) -> cython.bi
     i: cython.Py_ssize_t
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point and variable.body >= 0:
-            if not norm(scene.bodies[variable.body].omega) * length <= scene.limits.seen_turn:
+        if variable.is_point == OF_LOAD:
+            load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+            if turns_far(scene, load.a, length) or turns_far(scene, load.b, length):
                 return True
+        elif variable.is_point and turns_far(scene, variable.body, length):
+            return True
     return False
+
+
+def turns_far(scene: cython.pointer[Scene], body: cython.int, length: cython.double) -> cython.bint:
+    """Whether a body turns by so much."""
+    return body >= 0 and not norm(scene.bodies[body].omega) * length <= scene.limits.seen_turn
 
 
 # Laying their course
@@ -147,7 +157,10 @@ def range_points(
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
         if not variable.is_point:
             continue
-        A: cython.double = acceleration_of(points, variable)
+        if variable.is_point == OF_LOAD:
+            ranges[i] = range_of_load(scene, points, i, T, ranges[i].value, rates)
+            continue
+        A: cython.double = acceleration_of(points, variable.body, variable.q)
         bend: cython.double = 0.125 * A * T * T + rounding_of(scene, points, variable, False)
         drift: cython.double = 0.5 * A * T + rounding_of(scene, points, variable, True)
         place: Bounds = between(points.first_place[i], points.last_place[i], bend)
@@ -176,25 +189,13 @@ def end_of_part(
     kinematics(scene, course.latest if t > course.latest else t, course.points.at)
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point:
+        if variable.is_point == OF_LOAD:
+            load_at_end(scene, i, places, rates)
+        elif variable.is_point:
             there: PointMotion = point_of(scene, variable.body, variable.q)
             places[i] = dot(variable.direction, there.x) + variable.offset
             rates[i] = dot(variable.direction, there.v)
     swap_bodies(scene)
-
-
-def between(a: cython.double, b: cython.double, beyond: cython.double) -> Bounds:
-    """What lies between two numbers, or so far beyond them."""
-    return Bounds(a - beyond, b + beyond) if a < b else Bounds(b - beyond, a + beyond)
-
-
-def acceleration_of(points: cython.pointer[Orbits], variable: cython.pointer[Variable]) -> cython.double:
-    """The largest acceleration of a point over the part."""
-    i: cython.Py_ssize_t = variable.body
-    if i < 0:
-        return 0.0
-    # the dense outputs of coordinates and of rates agree to the error of a step, far better than to an eighth
-    return 1.125 * (points.pull[i] + (points.twist[i] + points.spin[i] * points.spin[i]) * norm(variable.q))
 
 
 def rounding_of(

@@ -55,7 +55,7 @@ def take_numbers(scene: cython.pointer[Scene], tables: dict[str, Any], numbers: 
     scene.part_count = len(tables["parts"])
     scene.counter_count = len(tables["counters"])
     scene.variable_count = len(tables["variables"])
-    scene.point_count = tables["variables"]["is_point"].tolist().count(1)
+    scene.point_count = tables["variables"]["is_point"].astype(bool).sum().item()
     scene.lent_count = len(tables["lents"])
     scene.island_count = len(tables["islands"])
     scene.watch_count = len(tables["watches"])

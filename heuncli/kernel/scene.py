@@ -17,6 +17,9 @@ from heuncli.kernel.structs import Pointer, Record, Size, Struct, Value
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
+BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
+AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
+ALONG_LINE = 3  # of a load: its length; before that the components of its strain
 GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
@@ -105,10 +108,10 @@ class Load(Record):
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
-    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator) stands in x
+    vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
     stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
-    length: float  # of a spring without load [m]; of a turn spring its free angle [rad]
-    coefficient: float  # of damping [N s/m], [N m s]; of friction its force [N], torque [N m]
+    length: float  # of a spring without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
+    coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
     factor: float  # of a force or couple: by which the vector is to be multiplied
@@ -120,6 +123,10 @@ class Load(Record):
     row: int  # of a joint that was cut: its first closure row
     row_count: int
     reach: float  # of ENDS: the distance between the two ends [m]
+    frame: Mat3  # of a bushing: its axes, in a
+    to_frame: Mat3  # and those in b that agree with them where it is not turned
+    stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
+    resistances: Vec3  # [N s/m], [N m s]
 
     force: Vec3  # on b
     moment: Vec3
@@ -127,10 +134,11 @@ class Load(Record):
     from_at: Vec3  # where on a
     value: float
     span: float  # distance of the two points; of a turn spring its angle; of what presses whether it was FOUND
+    strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
     unit: Vec3  # of friction by what presses: force or moment on b where that is 1
-    pressed: float  # what presses [N]
+    pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
 
 
 class Closure(Record):
@@ -199,12 +207,14 @@ class Closure(Record):
 class Contact(Record):
     """A one-sided closure row: its margin, sense * gap while it is open, sense * multiplier while closed, is not > 0.
 
-    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves.
+    The margin is followed over every step; what is followed of its rate, where it is open, shows that it leaves. The
+    row of a latch holds both ways while it is closed, by a place that is told with that: it has no margin.
     """
 
     row: int
-    sense: int  # 1: an upper limit, a rope; -1: a lower limit
+    sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    held_at: int  # of a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
     start: float  # the margin at the start of a step, and its rate
     start_rate: float
@@ -233,11 +243,16 @@ class Counter(Record):
 
 
 class Variable(Record):
-    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate."""
+    """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
+
+    Of a load (OF_LOAD) the length of its line, the rate of that, or a component of its strain.
+    """
 
     freedom: int
     is_rate: int
-    is_point: int
+    is_point: int  # 0, AT_POINT, OF_LOAD
+    load: int
+    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE
     body: int  # of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes
@@ -414,6 +429,21 @@ class LoadTangent(Value):
     moment: Vec3
 
 
+class LineTangent(Value):
+    """What the line between a load's two points changes by along a direction of the state: n, length and its rate."""
+
+    turned: Vec3
+    length: float
+    rate: float
+
+
+class BushingTangent(Value):
+    """What a bushing's force or moment changes by along a direction of the state, and the power of its loss."""
+
+    acts: Vec3
+    power: float
+
+
 class RowTangent(Value):
     """What a closure row changes by along a direction of the state: place, unit load, rate, J Vdot + gamma."""
 
@@ -474,9 +504,9 @@ class Instants(Value):
     afresh: bool  # the closure rows are chosen anew at each
     held: bool  # `branches` are given
     causes: bool  # a column a cause is answered, too
-    opening: int  # numbers of `holding` a state; 0: the contacts stay as they are
+    opening: int  # numbers of `holding` a state (take_holding); 0: the contacts stay as they are
     branches: list[float]  # that expressions hold
-    holding: list[float]  # which contacts are closed, and how
+    holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]
     states: list[float]  # settled in place
     bodies: list[float]  # the answers, a kind each (tree/tables.py)
@@ -500,7 +530,7 @@ class Scene(Struct):
     part_count: int
     counter_count: int
     variable_count: int
-    point_count: int  # variables that are of points
+    point_count: int  # variables that are of points or loads
     lent_count: int
     island_count: int
     watch_count: int

@@ -50,6 +50,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_loads import loads_along
     from heuncli.kernel.tangent_motion import move_along, omega_along, swung
     from heuncli.kernel.tangent_pressing import carry_along, press_along
+    from heuncli.kernel.tangent_strains import variables_along
     from heuncli.kernel.tree import balance, direction_of, downward, load_along, push_lent
 
 
@@ -90,6 +91,8 @@ def change_along(
 ) -> cython.void:
     """What the state's time derivative changes by along a direction, from the state that stands."""
     move_along(scene, y, along)
+    if scene.point_count:
+        variables_along(scene)
     keep_along(scene)
     power: cython.double = loads_along(scene)
     closures_along(scene)

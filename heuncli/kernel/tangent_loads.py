@@ -17,9 +17,10 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.jets import slope
     from heuncli.kernel.libm import NAN
-    from heuncli.kernel.loads import omega_of, sliding_in
+    from heuncli.kernel.loads import motion_in, omega_of, sliding_in
     from heuncli.kernel.scene import (
         ACTUATOR,
+        BUSHING_SHIFT,
         COUPLE,
         FORCE,
         SHIFT_DAMPER,
@@ -30,13 +31,17 @@ if not cython.compiled:
         TURN_SPRING,
         Body,
         BodyTangent,
+        BushingTangent,
+        LineTangent,
         Load,
         LoadTangent,
         PointMotion,
         Scene,
     )
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.tangent_bushings import bushing_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_strains import line_along
     from heuncli.kernel.tree import direction_of, point_of
 
 
@@ -57,6 +62,8 @@ def loads_along(scene: cython.pointer[Scene]) -> cython.double:
             power += outer_along(scene, load, given, there)
         elif load.kind == SPRING or load.kind == ACTUATOR:
             power += pair_along(scene, load, given.x, there)
+        elif load.kind >= BUSHING_SHIFT:
+            power += elastic_along(scene, load, given, there)
         else:
             power += joint_along(scene, load, given.x, there)
     return power
@@ -110,7 +117,7 @@ def pair_along(
 ) -> cython.double:
     """A spring or actuator along the line n between two points; what the power of damping or drive changes by.
 
-    dF = -k dl - c d(ldot),  d(ldot) = dn . v + n . dv,  dn = (dD - n dl) / l for D = l n.
+    dF = -k dl - c d(ldot).
     """
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     power: cython.double = 0.0
@@ -118,23 +125,17 @@ def pair_along(
     if load.a == load.b:
         return 0.0
     here: PointMotion = point_along(scene, load.a, load.p)
-    change: Vec3 = sub(there.x, here.x)
     if load.span > 0.0:
-        w: cython.double = 1.0 / load.span
-        n: Vec3 = scaled(w, sub(load.at, load.from_at))
-        v: Vec3 = sub(point_of(scene, load.b, load.q).v, point_of(scene, load.a, load.p).v)
-        length: cython.double = dot(n, change)
-        turned: Vec3 = scaled(w, add_scaled(change, -length, n))
-        rate: cython.double = dot(turned, v) + dot(n, sub(there.v, here.v))
+        line: LineTangent = line_along(scene, load)
         F: cython.double = given
         if load.kind == SPRING:
-            F = -load.stiffness * length - load.coefficient * rate
-            power = -2.0 * load.coefficient * load.rate * rate
+            F = -load.stiffness * line.length - load.coefficient * line.rate
+            power = -2.0 * load.coefficient * load.rate * line.rate
         else:
-            power = given * load.rate + load.value * rate
-        force = add_scaled(scaled(F, n), load.value, turned)
+            power = given * load.rate + load.value * line.rate
+        force = add_scaled(scaled(F / load.span, sub(load.at, load.from_at)), load.value, line.turned)
     elif load.kind == SPRING and load.length == 0.0:  # as the force begins where the points coincide
-        force = scaled(-load.stiffness, change)
+        force = scaled(-load.stiffness, sub(there.x, here.x))
     d: LoadTangent = LoadTangent(there.x, force, zero)
     push_along(scene, load.b, load.at, load.force, d)
     d = opposite(LoadTangent(here.x, force, zero))
@@ -178,6 +179,25 @@ def joint_along(
     return power
 
 
+def elastic_along(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, there: PointMotion
+) -> cython.double:
+    """A bushing between two bodies; what the power of what has no potential changes by."""
+    if load.a == load.b:
+        return 0.0
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    slides: cython.bint = load.kind == BUSHING_SHIFT
+    motion: Vec3 = motion_in(scene, load, point_of(scene, load.b, load.q).v, slides)
+    change: Vec3 = sub(omega_along(scene, load.b), omega_along(scene, load.a))
+    if slides:
+        change = sliding_along(scene, load, there)
+    found: BushingTangent = bushing_along(scene, load, given, motion, change)
+    d: LoadTangent = LoadTangent(there.x, found.acts, zero) if slides else LoadTangent(there.x, zero, found.acts)
+    push_along(scene, load.b, load.at, load.force, d)
+    push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
+    return found.power
+
+
 def sliding_along(scene: cython.pointer[Scene], load: cython.pointer[Load], there: PointMotion) -> Vec3:
     """Of the velocity of b's point as seen from a."""
     if load.a < 0:
@@ -216,7 +236,7 @@ def resistance(load: cython.pointer[Load], speed: cython.double) -> cython.doubl
     """Of a damper or friction: the load by the speed."""
     if load.kind < TURN_FRICTION:
         return load.coefficient
-    size: cython.double = load.coefficient * (load.pressed if load.presses else 1.0)
+    size: cython.double = load.coefficient * load.pressed
     if speed > 0.0:
         return size * tanh(speed / load.speed) / speed
     return size / load.speed
@@ -227,5 +247,5 @@ def resistance_along(load: cython.pointer[Load], speed: cython.double) -> cython
     if load.kind < TURN_FRICTION or not speed > 0.0:
         return 0.0
     f: cython.double = tanh(speed / load.speed)
-    size: cython.double = load.coefficient * (load.pressed if load.presses else 1.0)
+    size: cython.double = load.coefficient * load.pressed
     return size * ((1.0 - f * f) / load.speed - f / speed) / speed

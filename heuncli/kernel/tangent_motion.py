@@ -13,7 +13,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, rotate, scaled, sub, transform
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
     from heuncli.kernel.scene import (
         SHIFT,
         TURN_IN_BODY,
@@ -47,20 +47,6 @@ def move_along(scene: cython.pointer[Scene], y: cython.p_double, along: cython.p
         else:
             orient_along(scene, body, d)
         resist_along(body, cython.address(scene.at_state[i]), d)
-    if scene.point_count:
-        points_along(scene)
-
-
-def points_along(scene: cython.pointer[Scene]) -> cython.void:
-    """Of the variables that are places and velocities of points."""
-    i: cython.Py_ssize_t
-    for i in range(1, scene.variable_count):
-        variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point:
-            there: PointMotion = point_along(scene, variable.body, variable.q)
-            scene.slopes[i] = dot(variable.direction, there.v if variable.is_rate else there.x)
-            if scene.slopes[i] != 0.0:
-                scene.sloping = 1
 
 
 def coordinates_along(scene: cython.pointer[Scene], along: cython.p_double) -> cython.void:
@@ -241,6 +227,13 @@ def swung(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
     if body < 0:
         return Vec3(0.0, 0.0, 0.0)
     return cross(scene.tangents[body].turn, a)
+
+
+def turn_along_of(scene: cython.pointer[Scene], body: cython.int) -> Vec3:
+    """By what a body turns; the ground does not."""
+    if body < 0:
+        return Vec3(0.0, 0.0, 0.0)
+    return scene.tangents[body].turn
 
 
 def omega_along(scene: cython.pointer[Scene], body: cython.int) -> Vec3:

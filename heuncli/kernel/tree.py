@@ -69,6 +69,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import (
+        OF_LOAD,
         SHIFT,
         TURN_IN_BODY,
         TURN_IN_PARENT,
@@ -80,6 +81,7 @@ if not cython.compiled:
         Variable,
     )
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.strains import of_load
 
 
 def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:
@@ -118,11 +120,13 @@ def kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doubl
 
 
 def put_points(scene: cython.pointer[Scene]) -> cython.void:
-    """The variables that are places and velocities of points, as the bodies stand."""
+    """The variables that are places and velocities of points, or of what loads act between, as the bodies stand."""
     i: cython.Py_ssize_t
     for i in range(1, scene.variable_count):
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
-        if variable.is_point:
+        if variable.is_point == OF_LOAD:
+            scene.programs.variables[i] = of_load(scene, variable)
+        elif variable.is_point:
             there: PointMotion = point_of(scene, variable.body, variable.q)
             if variable.is_rate:
                 scene.programs.variables[i] = dot(variable.direction, there.v)

@@ -19,7 +19,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.answers import carry, put_jacobian, recover_states, take_holding
+    from heuncli.kernel.answers import carry, put_jacobian, put_measured, recover_states, take_holding
     from heuncli.kernel.chosen import choose_afresh, judge_start
     from heuncli.kernel.closures import measure_rows
     from heuncli.kernel.columns import answer_blow, answer_column, measure_answers
@@ -48,7 +48,8 @@ class Workspace:
         scene: cython.pointer[Scene] = cython.address(self.scene)
         self.expressions: Expressions = expressions
         self.memory: Memory = Memory()
-        self.opening: cython.int = sum(1 for opens in tables["contacts"]["opens"].tolist() if opens)
+        told: Any = [*tables["contacts"]["opens"].tolist(), *tables["contacts"]["held_at"].tolist()]
+        self.opening: cython.int = sum(1 for k in told if k)
         scene.programs = cython.address(expressions.programs)
         scene.held_count = expressions.held
         take_numbers(scene, tables, numbers)
@@ -65,7 +66,7 @@ class Workspace:
             judge_start(cython.address(self.scene), t, memory.doubles(state))
 
     def hold(self, holding: Any) -> None:
-        """Open and close the contacts, until the next call: of each 0 open, 1 closed, 2 closed by others."""
+        """Open and close the contacts, until the next call: of each a number, then of each latch one (take_holding)."""
         memory: Memory = Memory()
         if self.opening:
             take_holding(cython.address(self.scene), memory.doubles(holding), 0)
@@ -88,6 +89,13 @@ class Workspace:
         measure_rows(scene, t)
 
     # What is asked of it
+
+    def measured(self, t: cython.double, state: Any, bodies: Any, gaps: Any, rates: Any) -> None:
+        """How bodies and closure rows stand and move at a state as it is, into flat arrays: nothing is settled."""
+        memory: Memory = Memory()
+        self.measure_at(t, state)
+        put_measured(cython.address(self.scene), memory.whole(bodies), memory.whole(gaps), memory.whole(rates))
+        memory.fetch()
 
     def variables(self, t: float, state: Any) -> list[float]:
         """The variables of the expressions at a state, which is not changed."""

@@ -15,7 +15,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
+from heuncli.mechanism.model import GROUND, Bushing, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -26,7 +26,7 @@ class ActionEnd:
     """Where an action enters a body; the moment is about `position` (n_t, 3), world.
 
     point: where that is in the body's axes (3,), None where it moves over the body. apart: the position is that of the
-    other body's point, at a distance equal to the closure's gap or the rod's length.
+    other body's point, at a distance equal to the closure's gap, the rod's length or a bushing's shift.
     """
 
     body: int
@@ -81,6 +81,7 @@ class AppliedLoad:
     value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
     that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint,
     the magnitude where that has no one axis (of which a turn spring's angle is the length, other loads have none).
+    strain: of a bushing its shift and its turn, (n_t, 2, 3) [m], [rad], in its own axes.
     """
 
     load: Load
@@ -89,6 +90,7 @@ class AppliedLoad:
     length: Array
     rate: Array
     power: Array
+    strain: Array | None = None
 
 
 def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered) -> list[AppliedLoad]:
@@ -111,7 +113,8 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
         to, from_ = _ends(mechanism, load, joint, on_to, rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
-        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1)))
+        strain = rows["strain"] if isinstance(load, Bushing) else None
+        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
     return loads
 
 
@@ -143,6 +146,8 @@ def _ends(
         return ActionEnd(load.body, on_to, point), None
     if isinstance(load, PairLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
+    if isinstance(load, Bushing):
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, None, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)
 

@@ -7,7 +7,8 @@ by their sums, by Steiner, if they are the same turned by 180 degrees, so that t
     A = sum A_i,   I1 = sum (h_i^2/12 + y_i^2) A_i,   I2 likewise,   I12 = sum x_i y_i A_i = 0: e1, e2 are principal
     J >= sum J_i: joined parts twist no more than apart (their stress functions together are one of the whole)
 
-so that stresses from torsion are on the safe side; so are those from shear, of a shape that is not known.
+so that stresses from torsion are on the safe side; so are those from shear, of a shape that is not known. Of a mesh the
+outline has them (shapes/profiles.py), J again from below.
 """
 
 from __future__ import annotations
@@ -21,7 +22,8 @@ from heuncli import tolerances
 from heuncli.kinetostatics.stress import MODULI, stresses, torsion_constant
 from heuncli.records import record
 from heuncli.results import Array, Block, Mask
-from heuncli.shapes.figures import CuttingPlanes, Figure, Rectangle, Round, Unknown, figure_of
+from heuncli.shapes.figure_kinds import CuttingPlanes, Figure, Profile, Rectangle, Round, Unknown
+from heuncli.shapes.figures import figure_of
 from heuncli.shapes.forms import Form
 
 Values = Mapping[str, float]
@@ -102,6 +104,9 @@ def one_sided(cut: Cutting, side: float) -> CutProperties:
         if isinstance(figure, Unknown):
             missing |= {int(k): figure.why for k in np.flatnonzero(alone)}
             continue
+        if isinstance(figure, Profile):
+            missing |= {int(k): figure.missing[int(k)] for k in np.flatnonzero(alone) if int(k) in figure.missing}
+            alone = alone & ~np.isin(np.arange(len(cut.d)), [*figure.missing])
         if isinstance(figure, Round):
             missing |= {int(k): "the cut has no area" for k in np.flatnonzero(alone & ~(figure.outer > figure.inner))}
             alone = alone & (figure.outer > figure.inner)
@@ -118,8 +123,10 @@ def one_sided(cut: Cutting, side: float) -> CutProperties:
     return CutProperties(tuple(groups), missing)
 
 
-def groups_of(figure: Round | Rectangle, on: Mask) -> list[CutGroup]:
+def groups_of(figure: Round | Rectangle | Profile, on: Mask) -> list[CutGroup]:
     """Cuts through one shape alone."""
+    if isinstance(figure, Profile):
+        return [CutGroup(on, "general", figure.values)]
     if isinstance(figure, Rectangle):
         return [CutGroup(on, "rectangle", {"width": figure.width, "height": figure.height})]
     full = figure.inner <= 0.0
@@ -132,6 +139,8 @@ def combined(figures: Sequence[Figure], k: int, cut: Cutting) -> tuple[str, Valu
     unknown = next((figure.why for figure in figures if isinstance(figure, Unknown)), None)
     if unknown is not None:
         return unknown
+    if any(isinstance(figure, Profile) for figure in figures):
+        return "a mesh is cut together with other shapes, and whether they touch is not known"
     near = tolerances.TOUCHING * cut.form.near
     rounds = [figure for figure in figures if isinstance(figure, Round)]
     rectangles = [figure for figure in figures if isinstance(figure, Rectangle)]

@@ -65,6 +65,11 @@ class CouplingLoads:
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
 
+    @property
+    def carries(self) -> str:
+        """What its load is called: a moment, where it loads by couples alone."""
+        return "moment" if self.coupling.rows[0].is_couple else "force"
+
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
         own = tuple(multipliers[..., r] for r in self.rows)

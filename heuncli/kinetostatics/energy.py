@@ -12,7 +12,7 @@ from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import JointLoad, Mechanism, PairLoad
+from heuncli.mechanism.model import Bushing, JointLoad, Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
@@ -33,8 +33,20 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
         elif isinstance(load, JointLoad) and load.kind == "turn_spring":
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.angle)
+        elif isinstance(load, Bushing):
+            potential = potential + bushing_energy(load, applied)
     work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
+
+
+def bushing_energy(load: Bushing, applied: AppliedLoad) -> Array:
+    """Of springs and preloads; what hangs on a deflection by a table is work."""
+    assert applied.strain is not None
+    found = np.zeros(len(applied.strain))
+    for x, part in zip(np.moveaxis(applied.strain, 1, 0), (load.shift, load.turn), strict=True):
+        preload = np.array([e.constant or 0.0 for e in part.given])
+        found = found + 0.5 * np.square(x) @ part.stiffness - x @ preload
+    return found
 
 
 def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:

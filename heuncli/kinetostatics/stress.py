@@ -95,8 +95,8 @@ def general(v: Sizes) -> SectionModuli:
     A convex section's is at most 2 rho T/J, rho the radius of the largest circle in it (Payne's bound of the stress
     function's slope), which is at most min(c1, c2); an open profile's is t T/J with walls of t < 2 min(c1, c2).
     """
-    c1, c2, shear = float(v["c1"]), float(v["c2"]), float(v.get("shear_factor", UNKNOWN_SHEAR))
-    reach = max(c1, c2, 2.0 * min(c1, c2))
+    c1, c2, shear = v["c1"], v["c2"], v.get("shear_factor", UNKNOWN_SHEAR)
+    reach = np.maximum(np.maximum(c1, c2), 2.0 * np.minimum(c1, c2))
     return SectionModuli(v["area"], v["I1"], v["I2"], c1, c2, v["J"] / reach, shear, False, fields.unknown)
 
 

@@ -53,7 +53,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
     if len(state) != layout.n_state:
         message = f"a state of {layout.n_state} numbers is wanted, one of {len(state)} was given"
         raise ValueError(message)
-    at = workspace_of(layout, None if holding is None else (np.asarray(holding) > 0.0).astype(float))
+    at = workspace_of(layout, None if holding is None else layout.closed(holding))
     own, poses = settled(at, layout, t, state)
     found = motions(at, layout, t, own)
     place = places_of_rates(layout)

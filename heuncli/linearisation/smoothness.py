@@ -105,7 +105,10 @@ def on_branches(programs: Any, start: int, count: int, variables: Array, held: l
 def touching(here: Looked) -> Iterator[str]:
     """Ropes and stops that touch and bear nothing: what they do depends on which way they are moved."""
     layout, rows = here.layout, here.at.rows
+    latched = {layout.contacts[k].joint for k in layout.latches if here.holding[k] > 0.0}
     for k, contact in enumerate(layout.contacts):
+        if contact.sense == 0 or contact.joint in latched:
+            continue
         name = f"joints.{contact.name}" if contact.is_rope else f"stops.{contact.name}"
         if here.holding[k] > 0.0:
             bears = abs(float(rows["multiplier"][0, contact.row])) * unit_load(here, contact.row)

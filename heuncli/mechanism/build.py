@@ -15,7 +15,9 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Directed,
+    Elastic,
     Joint,
     JointLoad,
     Load,
@@ -64,10 +66,13 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
+    conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
     if planar:
-        told = {joints[stop.joint][0] for stop in spec.stops.values()} | coordinates_used(loads, values, joints)
+        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
+            loads, values, joints
+        )
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
         seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
@@ -86,9 +91,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(
-            Stop(s.name, joints[s.joint][0], s.quantity, s.low, s.high, s.restitution) for s in spec.stops.values()
-        ),
+        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
         conditions=conditions,
         points=points,
         couplings=couplings,
@@ -204,16 +207,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (None, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
-        case m.Torque():
+        case m.Bushing():
+            return bushing(name, f, index)
+        case m.Torque() | m.Motor():
             return JointLoad(name, "torque", joints[f.joint][0], f.value)
         case m.TurnSpring():
             k = joints[f.joint][0]
+            if f.torque is not None:
+                return JointLoad(name, "torque", k, f.torque)
             return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
         case m.Damper():
             # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
             k, kind = joints[f.joint]
+            if f.law is not None:
+                return JointLoad(name, "torque", k, f.law)
             sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
             return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
         case m.Friction():
@@ -222,10 +233,24 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> Bushing:
+    """Six springs and dampers."""
+
+    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
+
+    a, b = f.from_, f.to
+    return Bushing(
+        name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
+        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+    )  # fmt: skip
+
+
 def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
     """Friction of a given size, or by what of the joint's own load presses."""
     if f.coefficient is None:
-        return JointLoad(name, "friction", joint, None, f.torque or 0.0, f.force or 0.0, f.speed)
+        of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
+        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
     turning, speed = f.coefficient * (f.radius or 0.0), f.speed
     if f.radius is not None:
         return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")
@@ -239,3 +264,8 @@ def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
     return Blow(
         b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
     )  # fmt: skip
+
+
+def stop(s: m.Stop[str], joint: int) -> Stop:
+    """A stop or a latch of a joint's coordinate."""
+    return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

@@ -36,7 +36,9 @@ class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
     p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
-    its gap is counted by, of a turn one, of a mesh one or two. radius: of a wheel.
+    its gap is counted by, of a turn one, of a mesh one or two. apart: of a mesh the force that pushes b out of a beside
+    it, for a multiplier of 1 or of -1: it does no work, whatever moves, and stands in the axes of c, too. radius: of a
+    wheel.
     """
 
     kind: CouplingKind
@@ -49,6 +51,7 @@ class CouplingPart:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    apart: Array | tuple[float, float, float] = NOWHERE
     radius: float = 0.0
 
     @property

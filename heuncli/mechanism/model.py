@@ -2,7 +2,7 @@
 
 Vectors are (3,) float64. Bodies and joints are called by their numbers, in the order of the spec; body -1 is the
 ground. Values in time stay expressions (expressions/programs.py). Bodies, joints, drives, blows, stops and conditions
-have the classes of the spec (spec/models.py); its nine kinds of loads become three, by where they act.
+have the classes of the spec (spec/models.py); its kinds of loads become four, by where they act.
 """
 
 from __future__ import annotations
@@ -25,11 +25,13 @@ GROUND = -1
 if TYPE_CHECKING:
     Directed = models.Directed[Array]
     Body = models.Body[Array, Array]
+    Elastic = models.Elastic[Array]
     Joint = models.Joint[int, Array]
     Blow = models.Blow[int, Array]
     Stop = models.Stop[int]
 else:  # a record made by such an alias would be told of it, and refuse: 3 us each
     Directed, Body, Joint, Blow, Stop = models.Directed, models.Body, models.Joint, models.Blow, models.Stop
+    Elastic = models.Elastic
 
 
 @record
@@ -133,8 +135,8 @@ class JointLoad:
     kind: Literal["torque", "turn_spring", "damper", "friction"]
     joint: int
     value: Expression | None  # torque: N m about the axis, or N along the slide
-    turning: float = 1.0  # damper, turn spring: N m s; friction: N m; torque: 1
-    sliding: float = 1.0  # damper: N s/m; friction: N; thrust: 1
+    turning: float = 1.0  # damper, turn spring: N m s; friction: by which `value` is its size [N m]; torque: 1
+    sliding: float = 1.0  # damper: N s/m; friction: by which `value` is its size [N]; thrust: 1
     speed: float = 1.0  # friction: where tanh(rate/speed) bends
     stiffness: float = 0.0  # turn spring: N m/rad
     angle: float = 0.0  # turn spring: where it is relaxed [rad]
@@ -158,7 +160,43 @@ class JointLoad:
         return ()
 
 
-Load = PointLoad | PairLoad | JointLoad
+@record
+class Bushing:
+    """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
+
+    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in b
+    that agree with them where it is not turned.
+    """
+
+    name: str
+    a: int
+    p: Array
+    b: int
+    q: Array
+    frame: Array
+    to_frame: Array
+    shift: Elastic
+    turn: Elastic
+    kind: str = "bushing"
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time: of the shift, of the turn."""
+        return (*self.shift.given, *self.turn.given)
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        damped = np.any(self.shift.damping) or np.any(self.turn.damping)
+        return not damped and all(e.constant is not None for e in self.values)
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return (self.a, self.p), (self.b, self.q)
+
+
+Load = PointLoad | PairLoad | JointLoad | Bushing
 
 
 @record
@@ -203,12 +241,17 @@ class Mechanism:
         return f"{'rolling' if coupling.given.type == 'wheel' else 'couplings'}.{coupling.name}"
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
-        """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion."""
+        """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion.
+
+        Of a bushing its shift and its turn.
+        """
         at = 0
         for load in self.loads:
             count = 1
             if isinstance(load, JointLoad):
                 count = len(JOINTS[self.joints[load.joint].kind].moved_by(load.kind))
+            elif isinstance(load, Bushing):
+                count = 2
             yield load, slice(at, at + count)
             at += count
 

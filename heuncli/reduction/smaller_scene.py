@@ -18,6 +18,7 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Joint,
     Load,
     Mechanism,
@@ -144,6 +145,12 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
     if isinstance(load, PairLoad):
         a, b = parts.at(load.a), parts.at(load.b)
         return replace(load, a=number[a.body], p=a.point(load.p), b=number[b.body], q=b.point(load.q))
+    if isinstance(load, Bushing):
+        a, b = parts.at(load.a), parts.at(load.b)
+        return replace(
+            load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
+            b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
+        )  # fmt: skip
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)

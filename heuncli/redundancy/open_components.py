@@ -104,7 +104,9 @@ def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> Non
     for number in numbers_of(loads):
         rows = stress.multipliers[:, [loads.rows[k] for k in number.rows]]
         parts[number.name] = np.asarray(stress.reaches(rows, stress.length if number.is_moment else 1.0).any(axis=1))
-        block[number.name] = opened(block[number.name], parts[number.name])
+    for own in (block, *block.get("shares", {}).values()):
+        for name in parts.keys() & own.keys():
+            own[name] = opened(own[name], parts[name])
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]
     for i, (end, own) in enumerate(block["on"].items()):

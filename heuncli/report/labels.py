@@ -19,7 +19,7 @@ from heuncli.records import record
 from heuncli.report.table_units import Units
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
 
-PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring"})
+PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring", "bushing"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 
@@ -113,7 +113,7 @@ def labels_of(spec: Spec) -> Labels:
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
     stops = {
         name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
-        for name, stop in spec.stops.items()
+        for name, stop in {**spec.stops, **spec.latches}.items()
     }
     return Labels(joints, forces, sections, stops, named)
 

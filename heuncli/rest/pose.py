@@ -42,15 +42,16 @@ def bearing(evaluator: Evaluator, coordinates: Coordinates, t: float, state: Arr
 
     What others keep closed bears nothing: of two ropes that hold a mast between them one does, by where it is pushed.
     """
-    none = np.zeros(len(evaluator.layout.contacts))
+    none = evaluator.layout.all_open
     if not len(none):
         return pose_at(evaluator, coordinates, t, state, none)
     from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
     from heuncli.integration.contacts.touching import LEANS
 
     still = pose_at(evaluator, coordinates, t, state, none).state
-    holding = held_at(evaluator, t, still)
-    return pose_at(evaluator, coordinates, t, state, np.where(holding == LEANS, 0.0, holding))
+    holding, own = held_at(evaluator, t, still), slice(len(evaluator.layout.contacts))
+    holding[own][holding[own] == LEANS] = 0.0
+    return pose_at(evaluator, coordinates, t, state, holding)
 
 
 def opening(contact: Contact, at: Pose) -> float:

@@ -245,7 +245,7 @@ class RestSearch:
 
     def is_broken(self, at: Pose, pose: Pose) -> bool:
         """Whether on the way from one pose to another a contact was passed, or would have to pull."""
-        for contact, held in zip(self.evaluator.layout.contacts, at.holding, strict=True):
+        for contact, held in zip(self.evaluator.layout.contacts, at.holding, strict=False):  # latches' places behind
             if held > 0.0 and carried(contact, pose) < min(0.0, carried(contact, at)):
                 return True
             if not held > 0.0 and opening(contact, pose) < min(0.0, opening(contact, at)) - self.near:

@@ -7,58 +7,14 @@ a sphere a circle everywhere. Of what is cut askew only that it is met is told, 
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from heuncli import tolerances
-from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.box import Box
+from heuncli.shapes.figure_kinds import CuttingPlanes, Figure, Rectangle, Round, Unknown
 from heuncli.shapes.frustum import Frustum
 from heuncli.shapes.rotations import cross_rows
-from heuncli.shapes.solids import Ball, Solid
-
-Flags = NDArray[np.bool_]
-
-
-@record
-class CuttingPlanes:
-    """Planes n.x = d (k,) and e1 in them; beside (k,): a hair before or beyond each, which decides what it meets."""
-
-    n: Array
-    e1: Array
-    d: Array
-    beside: Array
-
-
-@record
-class Round:
-    """Circles or rings, where planes meet a shape: centres (k, 3), radii (k,)."""
-
-    met: Flags
-    center: Array
-    outer: Array
-    inner: Array
-
-
-@record
-class Rectangle:
-    """Rectangles of one size with sides along e1 (width) and e2 (height), centres (k, 3)."""
-
-    met: Flags
-    center: Array
-    width: float
-    height: float
-
-
-@record
-class Unknown:
-    """Other figures, and what they are."""
-
-    met: Flags
-    why: str
-
-
-Figure = Round | Rectangle | Unknown
+from heuncli.shapes.solids import Ball, PointMass, Rod, Solid
 
 
 def figure_of(part: Solid, at: CuttingPlanes) -> Figure | None:
@@ -72,7 +28,11 @@ def figure_of(part: Solid, at: CuttingPlanes) -> Figure | None:
         radius = np.sqrt(np.maximum((part.radius - h) * (part.radius + h), 0.0))
         met = np.abs(at.beside - at.n @ part.center) < part.radius
         return Round(met, part.center + h[:, None] * at.n, radius, np.zeros_like(radius))
-    return None
+    if isinstance(part, PointMass | Rod):
+        return None
+    from heuncli.shapes.profiles import of_polyhedron  # few scenes have them
+
+    return of_polyhedron(part, at)
 
 
 def of_frustum(part: Frustum, at: CuttingPlanes) -> Figure:

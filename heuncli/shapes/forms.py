@@ -69,6 +69,16 @@ def point(shape: Shape, density: float) -> Solid:
     return PointMass(vector(shape.at), density)
 
 
+def mesh(shape: Shape, density: float) -> Solid:
+    from heuncli.meshes.welding import resolution  # few scenes have them
+    from heuncli.shapes.polyhedron import Polyhedron
+
+    surface, scale = given(shape.mesh), given(shape.scale)
+    axes = np.array(given(shape.rotation), dtype=np.float64)
+    places = vector(shape.at) + (scale * surface.corners) @ axes.T
+    return Polyhedron(places, surface.triangles, density, scale * resolution(surface.corners))
+
+
 # density: kg/m3; of a rod kg/m, of a point kg
 SOLIDS: dict[str, Callable[[Shape, float], Solid]] = {
     "rod": rod,
@@ -77,6 +87,7 @@ SOLIDS: dict[str, Callable[[Shape, float], Solid]] = {
     "box": box,
     "sphere": sphere,
     "point": point,
+    "mesh": mesh,
 }
 
 
@@ -186,4 +197,4 @@ def form(shapes: Iterable[Shape]) -> Form:
     """The form of a body from the spec's shapes."""
     parts = tuple(solid(shape) for shape in shapes)
     reach = [max(abs(h) for h in part.extent(axis)) for part in parts for axis in np.eye(3)]
-    return Form(parts, tolerances.IN_PLANE * max(reach))
+    return Form(parts, max(tolerances.IN_PLANE * max(reach), *(part.near for part in parts)))

@@ -27,12 +27,14 @@ class Outline:
     """Convex figures, one a plane: whether the plane meets the shape (k,), and its corners (c, m, 3) [m] at c planes.
 
     A ring has a hole where `hollow` (k,). Corners are asked for only where a plane meets several shapes, or only rods.
+    part: of what the figures are regions, each apart from the others of it; None: of nothing else.
     """
 
     met: Flags
     corners: Corners
     hole: Corners | None = None
     hollow: Flags | None = None
+    part: int | None = None
 
 
 def circle(n: Array, centers: Array, radii: Array) -> Array:
@@ -124,6 +126,8 @@ def count_joined(outlines: Sequence[Outline], planes: Planes, n: Array, near: fl
 
     for i, A in enumerate(shadows):
         for j, B in enumerate(shadows[:i]):
+            if outlines[i].part is not None and outlines[i].part == outlines[j].part:
+                continue
             one = met[:, i] & met[:, j] & (label[:, i] != label[:, j])  # what is joined by others needs no look
             if not one.any():
                 continue

@@ -20,7 +20,9 @@ from heuncli.shapes.outlines import Outline, circle
 
 
 class Solid(Protocol):
-    """A homogeneous shape in body axes."""
+    """A homogeneous shape in body axes; near [m]: how far off a plane its corners may be that are meant to lie in it."""
+
+    near: float
 
     def whole(self) -> Array:
         """Pseudo-inertia about the body's origin, (4, 4)."""
@@ -44,7 +46,13 @@ class Solid(Protocol):
         """Whether something without thickness lies in the plane, (k,)."""
 
 
-class Thick:
+class Exact:
+    """What all shapes have in common that are given by their measures."""
+
+    near = 0.0
+
+
+class Thick(Exact):
     """What all shapes with a volume have in common."""
 
     def lies_in(self, n: Array, d: Array, near: float) -> NDArray[np.bool_]:
@@ -57,7 +65,7 @@ def ends(solid: Solid, n: Array) -> Array:
 
 
 @record
-class PointMass:
+class PointMass(Exact):
     """A point mass [kg]."""
 
     at: Array
@@ -89,7 +97,7 @@ class PointMass:
 
 
 @record
-class Rod:
+class Rod(Exact):
     """A uniform straight rod without thickness between two points, line density [kg/m]."""
 
     start: Array

@@ -48,4 +48,49 @@ class Wheel(NamedTuple):
     type: Literal["wheel"] = "wheel"
 
 
-Coupling = Ratio | Wheel
+class Gear(NamedTuple):
+    """Two gears, or a gear and a rack, by their joints: those of the terms, whose factors are 1.
+
+    ratio: of the first coordinate by the second; teeth: of both; None where not given. at: the pitch point.
+    """
+
+    terms: tuple[Term, ...]
+    ratio: float | None = None
+    teeth: tuple[float, float] | None = None
+    internal: bool = False
+    at: End | None = None
+    pressure_angle: float = 0.0
+    helix: float = 0.0
+    type: Literal["gear"] = "gear"
+
+
+class Screw(NamedTuple):
+    """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
+
+    lead: travel a turn [m], of a left-handed thread below zero.
+    """
+
+    terms: tuple[Term, ...]
+    lead: float
+    type: Literal["screw"] = "screw"
+
+
+class Belt(NamedTuple):
+    """A belt over two pulleys of some radii [m]; pretension [N]: of each strand at rest without load; crossed."""
+
+    terms: tuple[Term, ...]
+    radii: tuple[float, float]
+    crossed: bool = False
+    pretension: float = 0.0
+    type: Literal["belt"] = "belt"
+
+
+class Differential(NamedTuple):
+    """Two shafts and their carrier, the terms: first - carrier = ratio (second - carrier)."""
+
+    terms: tuple[Term, ...]
+    ratio: float = -1.0
+    type: Literal["differential"] = "differential"
+
+
+Coupling = Ratio | Gear | Screw | Belt | Differential | Wheel  # a union of the classes here

@@ -18,7 +18,7 @@ from heuncli.expressions.grammar import NONE
 from heuncli.expressions.programs import Expression
 from heuncli.nearest import afford
 from heuncli.number_range import is_in_range
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.spec.entries import Before, Entry, OneOf, Tag
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
@@ -76,6 +76,40 @@ class InTime(ReadValue):
 
     def read(self, value: Any, info: Any) -> Expression:
         return in_time(value, self.dimension, info.context.time)
+
+
+class InOwn(ReadValue):
+    """A value in time, coordinates, and what the load itself acts between: own names with their quantities."""
+
+    def __init__(self, dimension: u.Dimension | None, own: Mapping[str, str]) -> None:
+        super().__init__(dimension)
+        self.own = own
+
+    def read(self, value: Any, info: Any) -> Expression:
+        return in_time(value, self.dimension, replace(info.context.time, own=self.own))
+
+
+class OrTable(Si):
+    """A number of a dimension, or the name of a table of force over deflection, moment over turn."""
+
+    def __init__(self, dimension: u.Dimension, of: str) -> None:
+        super().__init__(dimension)
+        self.of = of
+
+    def read(self, value: Any, info: Any) -> Any:
+        if type(value) is str and value.strip() in info.context.time.tables:
+            own = replace(info.context.time, own={self.of: self.of})
+            return in_time(f"-table({value.strip()}, {self.of})", None, own)
+        return super().read(value, info)
+
+
+class Curve(ReadValue):
+    """A motor's torque over its speed: the name of a table, or an expression in `rate`."""
+
+    def read(self, value: Any, info: Any) -> Expression:
+        scope = replace(info.context.time, own={"rate": "rate"})
+        named = type(value) is str and value.strip() in scope.tables
+        return in_time(f"table({value.strip()}, rate)" if named else value, self.dimension, scope)
 
 
 class Truth(ReadValue):
@@ -200,6 +234,14 @@ LengthInTime = Annotated[Expression, InTime(u.LENGTH)]
 ForceInTime = Annotated[Expression, InTime(u.FORCE)]
 LineForceInTime = Annotated[Expression, InTime(u.LINE_FORCE)]
 MomentInTime = Annotated[Expression, InTime(u.MOMENT)]
+OwnSpringForce = Annotated[Expression, InOwn(u.FORCE, {"length": "length", "rate": "speed"})]
+OwnTurnTorque = Annotated[Expression, InOwn(u.MOMENT, {"angle": "angle", "rate": "rate"})]
+OwnDamperTorque = Annotated[Expression, InOwn(u.MOMENT, {"rate": "rate"})]
+OwnDamperForce = Annotated[Expression, InOwn(u.FORCE, {"rate": "speed", "speed": "speed"})]
+MotorCurve = Annotated[Expression, Curve(u.MOMENT)]
+ShiftLaw = Annotated[Any, OrTable(u.STIFFNESS, "deflection")]
+TurnLaw = Annotated[Any, OrTable(u.TURNING_STIFFNESS, "turn")]
+NumberInTime = Annotated[Expression, InTime(u.NUMBER)]
 TruthInTime = Annotated[Expression, Truth()]
 StrikeInTime = Annotated[Expression, StrikingTruth()]
 EitherInTime = Annotated[Expression, InTime()]

@@ -115,7 +115,7 @@ class FirstReading(Loading):
 
     def meant(self, document: f.Document, meaning: Meaning) -> Spec:
         """The scene that the document means, of which every part is kept."""
-        self.curved = meaning.curves
+        self.curved, self.surfaced = meaning.curves, meaning.surfaces
         return resolve(document, meaning, FirstResolver(self, document, meaning))
 
     def names(self) -> Names:
@@ -264,10 +264,12 @@ class FirstResolver(Resolver):
     """Follows references, and keeps what each part of the scene hangs on."""
 
     def __init__(self, first: FirstReading, document: f.Document, meaning: Meaning) -> None:
-        super().__init__(document, meaning.locations, meaning.curves)
+        super().__init__(document, meaning.locations, meaning.curves, meaning.surfaces)
         self.first = first
-        locations, curves = (Watched(of, getattr(meaning, of), first.log) for of in ("locations", "curves"))
-        self.looking = Resolver(first.watched, locations, curves)
+        locations, curves, surfaces = (
+            Watched(of, getattr(meaning, of), first.log) for of in ("locations", "curves", "surfaces")
+        )
+        self.looking = Resolver(first.watched, locations, curves, surfaces)
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean."""

@@ -44,12 +44,19 @@ from heuncli.spec.fields import (
     Mass,
     Moment,
     MomentInTime,
+    MotorCurve,
     Number,
+    NumberInTime,
+    OwnDamperForce,
+    OwnDamperTorque,
+    OwnSpringForce,
+    OwnTurnTorque,
     PointOrName,
     Position,
     Pressure,
     Rate,
     RateInTime,
+    ShiftLaw,
     Stiffness,
     StrikeInTime,
     Switch,
@@ -58,6 +65,7 @@ from heuncli.spec.fields import (
     TruthInTime,
     TurningDamping,
     TurningStiffness,
+    TurnLaw,
     Velocity,
     VelocityInTime,
 )
@@ -294,20 +302,24 @@ class ActuatorEntry(Entry):
 
 
 class SpringEntry(Entry):
+    """A spring by its numbers, or by a law."""
+
     type: Literal["spring"]
     from_: AnEnd = key(alias="from")
     to: AnEnd
-    stiffness: Stiffness
-    length: Length
-    damping: Damping = 0.0
+    stiffness: Stiffness | None = None
+    length: Length | None = None
+    damping: Damping | None = None
+    force: OwnSpringForce | None = None
 
 
 class TurnSpringEntry(Entry):
     type: Literal["turn_spring"]
     joint: str
-    stiffness: TurningStiffness
-    angle: Angle = 0.0
-    damping: TurningDamping = 0.0
+    stiffness: TurningStiffness | None = None
+    angle: Angle | None = None
+    damping: TurningDamping | None = None
+    torque: OwnTurnTorque | None = None
 
 
 class DistributedEntry(Entry):
@@ -325,13 +337,80 @@ class DamperEntry(Entry):
     joint: str
     coefficient: Either | None = None
     sliding: Damping | None = None
+    torque: OwnDamperTorque | None = None
+    force: OwnDamperForce | None = None
+
+
+class MotorEntry(Entry):
+    type: Literal["motor"]
+    joint: str
+    curve: MotorCurve
+    ratio: Number = 1.0
+    limit: Moment | None = None
+    value: NumberInTime | None = None
+
+
+class ShiftLaws(Entry):
+    """Of a bushing's shift, axis by axis."""
+
+    x: ShiftLaw = 0.0
+    y: ShiftLaw = 0.0
+    z: ShiftLaw = 0.0
+
+
+class TurnLaws(Entry):
+    """Of a bushing's turning, axis by axis."""
+
+    x: TurnLaw = 0.0
+    y: TurnLaw = 0.0
+    z: TurnLaw = 0.0
+
+
+class BushingEntry(Entry):
+    type: Literal["bushing"]
+    from_: AnEnd = key(alias="from")
+    to: AnEnd
+    stiffness: (
+        Annotated[
+            Annotated[ShiftLaw, Tag("single")]
+            | Annotated[tuple[ShiftLaw, ShiftLaw, ShiftLaw], Tag("list")]
+            | Annotated[ShiftLaws, Tag("mapping")],
+            FORM,
+        ]
+        | None
+    ) = None
+    turning: (
+        Annotated[
+            Annotated[TurnLaw, Tag("single")]
+            | Annotated[tuple[TurnLaw, TurnLaw, TurnLaw], Tag("list")]
+            | Annotated[TurnLaws, Tag("mapping")],
+            FORM,
+        ]
+        | None
+    ) = None
+    damping: (
+        Annotated[Annotated[Damping, Tag("single")] | Annotated[tuple[Damping, Damping, Damping], Tag("list")], FORM]
+        | None
+    ) = None
+    turning_damping: (
+        Annotated[
+            Annotated[TurningDamping, Tag("single")]
+            | Annotated[tuple[TurningDamping, TurningDamping, TurningDamping], Tag("list")],
+            FORM,
+        ]
+        | None
+    ) = None
+    preload: tuple[Force, Force, Force] | None = None
+    turning_preload: tuple[Moment, Moment, Moment] | None = None
+    orientation: Orientation | None = None
+    to_orientation: Orientation | None = None
 
 
 class FrictionEntry(Entry):
     type: Literal["friction"]
     joint: str
-    torque: Moment | None = None
-    force: Force | None = None
+    torque: MomentInTime | None = None
+    force: ForceInTime | None = None
     coefficient: Number | None = None
     radius: Length | None = None
     length: Length | None = None
@@ -348,6 +427,8 @@ LoadEntry = (
     | DistributedEntry
     | DamperEntry
     | FrictionEntry
+    | MotorEntry
+    | BushingEntry
 )
 LOADS: dict[str, type[LoadEntry]] = {
     "force": ForceEntry,
@@ -359,6 +440,8 @@ LOADS: dict[str, type[LoadEntry]] = {
     "distributed": DistributedEntry,
     "damper": DamperEntry,
     "friction": FrictionEntry,
+    "motor": MotorEntry,
+    "bushing": BushingEntry,
 }
 
 
@@ -380,6 +463,17 @@ class StopEntry(Entry):
     length: LengthLimits | None = None
     restitution: Number = 0.0
     friction: Number | None = None
+
+
+class LatchEntry(Entry):
+    stop: str | None = None
+    limit: Literal["lower", "upper"] | None = None
+    joint: str | None = None
+    angle: Angle | None = None
+    travel: Length | None = None
+    when: StrikeInTime | None = None
+    release: StrikeInTime | None = None
+    every: Switch = False
 
 
 class CircleEntry(Entry):
@@ -524,7 +618,8 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "couplings": COUPLINGS, "rolling": RollingEntry, "sections": SectionEntry, "cases": CaseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
+    "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -543,6 +638,7 @@ class Document(NamedTuple):
     stops: dict[str, StopEntry]
     couplings: dict[str, CouplingEntry]
     rolling: dict[str, RollingEntry]
+    latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
     cases: dict[str, CaseEntry]
     analysis: AnalysisEntry

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal
 
 from heuncli.spec.entries import Entry
-from heuncli.spec.fields import Number
+from heuncli.spec.fields import AnEnd, Angle, Anything, Force, Length, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -16,5 +16,48 @@ class RatioEntry(Entry):
     factors: list[Number]
 
 
-CouplingEntry = RatioEntry
-COUPLINGS: dict[str, type[CouplingEntry]] = {"ratio": RatioEntry}
+class GearEntry(Entry):
+    """Two gears, or a gear and a rack."""
+
+    type: Literal["gear"]
+    of: list[str]
+    ratio: Anything | None = None
+    teeth: list[Number] | None = None
+    internal: Switch = False
+    at: AnEnd | None = None
+    pressure_angle: Angle = math.radians(20.0)
+    helix: Angle = 0.0
+
+
+class ScrewEntry(Entry):
+    """A thread."""
+
+    type: Literal["screw"]
+    of: list[str]
+    lead: Length
+
+
+class BeltEntry(Entry):
+    """A belt over two pulleys."""
+
+    type: Literal["belt"]
+    of: list[str]
+    radii: list[Length]
+    crossed: Switch = False
+    pretension: Force = 0.0
+
+
+class DifferentialEntry(Entry):
+    """Two shafts and their carrier."""
+
+    type: Literal["differential"]
+    of: list[str]
+    ratio: Number = -1.0
+
+
+CouplingEntry = Annotated[
+    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry, Field(discriminator="type")
+]
+COUPLINGS: dict[str, type[Entry]] = {
+    "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
+}  # fmt: skip

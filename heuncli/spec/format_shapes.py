@@ -71,8 +71,18 @@ class PointShape(Entry):
     mass: Mass
 
 
-ShapeEntry = RodShape | CylinderShape | ConeShape | BoxShape | SphereShape | PointShape
+class MeshShape(Entry):
+    type: Literal["mesh"]
+    file: str
+    scale: Length | None = None
+    at: Position | None = None
+    orientation: Orientation | None = None
+    mass: Mass | None = None
+    density: Density | None = None
+
+
+ShapeEntry = RodShape | CylinderShape | ConeShape | BoxShape | SphereShape | PointShape | MeshShape
 SHAPES: dict[str, type[ShapeEntry]] = {
     "rod": RodShape, "cylinder": CylinderShape, "cone": ConeShape, "box": BoxShape, "sphere": SphereShape,
-    "point": PointShape,
+    "point": PointShape, "mesh": MeshShape,
 }  # fmt: skip

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from heuncli.errors import SourceLocation
 from heuncli.expressions.grammar import GivenParameter
@@ -29,6 +29,9 @@ from heuncli.spec.rules.every import DraftDocument, Rule, Violation
 from heuncli.spec.sharing import same, shared, shared_entries
 from heuncli.spec.source import Path_, dotted
 from heuncli.spec.tables import Wrong
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 WHOLE = ("title", "space", "gravity", "ground", "report", "foundation", "expect", "cases", "warnings")  # of a scene
 
@@ -96,6 +99,11 @@ class LaterReading(Loading):
                 return kept.table, []
         return super().table(name, entry, scope)
 
+    def surface(self, file: str) -> tuple[TriangleMesh | None, list[Wrong]]:
+        """The mesh in a file, which is read once for all variants."""
+        kept = self.first.surfaced.get(file)
+        return (kept, []) if kept is not None else super().surface(file)
+
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:
         """What of the document breaks a rule."""
         self.differing = frozenset(self._differing(draft))
@@ -131,12 +139,13 @@ class LaterResolver(Resolver):
     """Follows references where something that a part of the scene hangs on has changed."""
 
     def __init__(self, later: LaterReading, document: f.Document, meaning: Meaning) -> None:
-        super().__init__(document, meaning.locations, meaning.curves)
+        super().__init__(document, meaning.locations, meaning.curves, meaning.surfaces)
         first = later.first
         self.kept, self.before, self.drafted = first.meanings, first.resolved, first.draft.document
         curves = changed("curves", meaning.curves, first.curved)
+        surfaces = changed("surfaces", meaning.surfaces, first.surfaced)
         moved = (Lookup("locations", words) for words in later.moved)
-        self.standing = first.standing(later.differing.union(moved, curves))
+        self.standing = first.standing(later.differing.union(moved, curves, surfaces))
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean; of a block in which all stand the first one."""

@@ -14,6 +14,7 @@ from heuncli.spec import format as f
 from heuncli.spec.cases import CASES, faults, settings_of
 from heuncli.spec.document import Reader
 from heuncli.spec.fields import Context
+from heuncli.spec.format_shapes import MeshShape
 from heuncli.spec.models import Curve, Spec
 from heuncli.spec.names import NAMED, Names, mapping
 from heuncli.spec.overrides import Setting, of_words, override, taken_in_si
@@ -29,6 +30,7 @@ from heuncli.spec.verdicts import is_primary
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from heuncli.meshes.model import TriangleMesh
     from heuncli.spec.named_files import NamedFiles
     from heuncli.spec.tables import Wrong
 
@@ -164,14 +166,15 @@ class Loading:
         expected = dict(self.expected(document))
         draft = DraftDocument(document._replace(expect=expected), names, frozenset(self.unread), {})
         self.judge(draft, reader.follows)
-        curves = self.curves(draft)
+        curves, surfaces = self.curves(draft), self.surfaces(document)
         if self.problems:
             raise SpecError(*in_order(self.problems))
         values = {name: value for name, value in parameters.items() if value is not None}
         built = {name: table for name, table in tables.items() if table is not None}
         warnings = tuple(in_order(self.warnings))
         source = self.source
-        meaning = Meaning(source.file, source.sha256, values, built, warnings, self.locations(), curves, self.case)
+        places = self.locations()
+        meaning = Meaning(source.file, source.sha256, values, built, warnings, places, curves, surfaces, self.case)
         return self.meant(draft.document, meaning)
 
     def scope(self, parameters: Mapping[str, float | None], given: Mapping[str, GivenParameter]) -> Scope:
@@ -248,6 +251,32 @@ class Loading:
                 self.warnings.append(Problem(told.code, told.message, self.location((*path, "curve")), told.hint))
             self.report_read(path, wrong)
         return curves
+
+    def surfaces(self, document: f.Document) -> dict[str, TriangleMesh]:
+        """The meshes of shapes, by the names of their files; those in error are left out."""
+        shapes = [
+            (("bodies", name, "shapes", i), shape)
+            for name, body in document.bodies.items()
+            for i, shape in enumerate(body.shapes or ())
+            if isinstance(shape, MeshShape)
+        ]
+        found: dict[str, tuple[TriangleMesh | None, list[Wrong]]] = {}
+        for path, shape in shapes:
+            from heuncli.spec.surfaces import judged, noted  # few scenes have them
+
+            if shape.file not in found:
+                found[shape.file] = self.surface(shape.file)
+            surface, wrong = found[shape.file]
+            self.report_read(path, wrong if surface is None else [*judged(shape, surface)])
+            for told in noted(shape, surface, self.named_files()):
+                self.warnings.append(Problem(told.code, told.message, self.location((*path, "file")), told.hint))
+        return {file: surface for file, (surface, _) in found.items() if surface is not None}
+
+    def surface(self, file: str) -> tuple[TriangleMesh | None, list[Wrong]]:
+        """The mesh in a file, or what is wrong with it."""
+        from heuncli.spec.surfaces import surface_of  # few scenes have them
+
+        return surface_of(file, self.named_files())
 
     def named_files(self) -> NamedFiles:
         """The files that the spec names."""

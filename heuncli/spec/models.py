@@ -12,13 +12,16 @@ import math
 from array import array
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Generic, Literal, TypeVar
+from typing import TYPE_CHECKING, Generic, Literal, TypeVar
 
 from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.spec.couplings import Coupling
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
@@ -51,9 +54,12 @@ class Ground(NamedTuple):
 
 
 class Shape(NamedTuple):
-    """A part of a body: one of mass, density, line_density is given; of the measures those its type has."""
+    """A part of a body: one of mass, density, line_density is given; of the measures those its type has.
 
-    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point"]
+    A mesh stands in the units and axes of its file: a corner x is at + rotation (scale x) [m].
+    """
+
+    type: Literal["rod", "cylinder", "cone", "box", "sphere", "point", "mesh"]
     mass: float | None = None
     density: float | None = None
     line_density: float | None = None
@@ -66,6 +72,8 @@ class Shape(NamedTuple):
     radius: float | None = None
     inner_radius: float | None = None
     to_radius: float | None = None
+    scale: float | None = None
+    mesh: TriangleMesh | None = None
 
 
 @record
@@ -207,23 +215,25 @@ class Actuator(NamedTuple):
 
 
 class Spring(NamedTuple):
-    """A spring and damper between two points: N/m, free length [m], N s/m."""
+    """A spring and damper between two points: N/m, free length [m], N s/m; or its force [N], positive pushes apart."""
 
     from_: End
     to: End
     stiffness: float
     length: float
     damping: float = 0.0
+    force: Expression | None = None
     type: Literal["spring"] = "spring"
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s."""
+    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s; or its torque [N m]."""
 
     joint: str
     stiffness: float
     angle: float
     damping: float = 0.0
+    torque: Expression | None = None
     type: Literal["turn_spring"] = "turn_spring"
 
 
@@ -239,25 +249,62 @@ class Distributed(NamedTuple):
     type: Literal["distributed"] = "distributed"
 
 
+@record
+class Elastic(Generic[V]):
+    """Three springs and dampers of a bushing, of its shift or of its turn, along its axes.
+
+    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; given: what it exerts beside, [N] or [N m]: a preload, or
+    in place of a stiffness what hangs on the deflection.
+    """
+
+    stiffness: V
+    damping: V
+    given: Vector
+
+
+class Bushing(NamedTuple):
+    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: those in that of `to`."""
+
+    from_: End
+    to: End
+    shift: Elastic[Vec]
+    turn: Elastic[Vec]
+    rotation: Matrix
+    to_rotation: Matrix
+    type: Literal["bushing"] = "bushing"
+
+
+class Motor(NamedTuple):
+    """A motor in a joint: torque ON `to` [N m], opposite on `from`, by the joint's rate."""
+
+    joint: str
+    value: Expression
+    type: Literal["motor"] = "motor"
+
+
 class Damper(NamedTuple):
-    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder)."""
+    """Resistance of a joint: coefficient N m s (turning) or N s/m (slide, line, plane); sliding N s/m (cylinder).
+
+    Or its torque [N m] or force [N] ON `to`, by the joint's rate.
+    """
 
     joint: str
     coefficient: float
     sliding: float | None = None
+    law: Expression | None = None
     type: Literal["damper"] = "damper"
 
 
 class Friction(NamedTuple):
-    """Coulomb friction in a joint, torque [N m] or force [N] times tanh(rate/speed).
+    """Coulomb friction in a joint, torque [N m] or force [N], in time, times tanh(rate/speed).
 
     Or coefficient: of what presses, the joint's own force; about a pin at a radius [m]. length [m]: of a guide at whose
     two ends it presses.
     """
 
     joint: str
-    torque: float | None
-    force: float | None
+    torque: Expression | None
+    force: Expression | None
     speed: float
     coefficient: float | None = None
     radius: float | None = None
@@ -265,7 +312,9 @@ class Friction(NamedTuple):
     type: Literal["friction"] = "friction"
 
 
-Force = PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction
+Force = (
+    PointForce | Couple | Torque | Actuator | Spring | TurnSpring | Distributed | Damper | Friction | Motor | Bushing
+)
 
 
 @record
@@ -289,8 +338,35 @@ class Blow(Generic[Ref, V]):
 
 
 @record
+class Latch:
+    """What of a latch its stop does not tell: where it catches, from when on, and when it lets go.
+
+    at: the coordinate at which it catches [rad] or [m]; stop: else at the limits of that stop which are told by their
+    sides (-1 the lower, 1 the upper); neither: wherever the coordinate is. when: only while this is true, None: always;
+    release: lets go, and does not catch, while this is true, None: never; every: again, after it was released.
+    passes: that the coordinate is beyond `at`, so that a motion through it is met.
+    """
+
+    at: float | None
+    stop: str | None
+    sides: tuple[int, ...]
+    when: Condition | None
+    release: Condition | None
+    passes: Condition | None
+    every: bool
+
+    @property
+    def conditions(self) -> tuple[Condition, ...]:
+        """What it hangs on."""
+        return tuple(c for c in (self.when, self.release, self.passes) if c is not None)
+
+
+@record
 class Stop(Generic[Ref]):
-    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1."""
+    """Limits of a joint's coordinate [rad] or [m], None where there is none; restitution: of its strikes, 0 to 1.
+
+    latch: what holds the coordinate both ways, without limits of its own.
+    """
 
     name: str
     joint: Ref
@@ -298,6 +374,7 @@ class Stop(Generic[Ref]):
     low: float | None
     high: float | None
     restitution: float = 0.0
+    latch: Latch | None = None
 
 
 class Properties(NamedTuple):
@@ -436,6 +513,7 @@ class Spec(NamedTuple):
     forces: Mapping[str, Force]
     impulses: Mapping[str, Blow[str, Vec]]
     stops: Mapping[str, Stop[str]]
+    latches: Mapping[str, Stop[str]]
     sections: Mapping[str, Section]
     tables: Mapping[str, TableFunction]
     analysis: Analysis

@@ -12,8 +12,10 @@ from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
 
 GROUND = "ground"
-NAMED = ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "couplings", "rolling",
-         "sections", "tables", "cases")  # fmt: skip
+NAMED = (
+    "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
+    "sections", "tables", "cases",
+)  # fmt: skip
 ALL_CASES = "all"  # what --case takes for every one of them
 UNTIL = "until"  # the condition that ends a motion, beside the events that have names
 CAUSES = frozenset({"gravity", "drives", "motion"})  # of shares, beside the entries' own names
@@ -27,6 +29,7 @@ RESERVED_FOR: dict[str, frozenset[str]] = {
     "stops": CAUSES,
     "couplings": CAUSES,
     "rolling": CAUSES,
+    "latches": CAUSES,
     "cases": frozenset({ALL_CASES}),
 }
 

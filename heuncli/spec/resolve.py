@@ -6,10 +6,12 @@ For documents in which no rule found an error.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
-from heuncli.expressions.programs import Expression, TableFunction
+from heuncli.expressions.composed import product, renamed, total, with_factor, within
+from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.expressions.programs import LOADS, OWN, Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
@@ -21,8 +23,21 @@ from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
-from heuncli.spec.semantics import body_axes, drive_of, end_of, instants_of, limits_of, point_in, tensor, type_of
+from heuncli.spec.semantics import (
+    body_axes,
+    drive_of,
+    end_of,
+    held_of,
+    instants_of,
+    limits_of,
+    point_in,
+    tensor,
+    type_of,
+)
 from heuncli.spec.turns import IDENTITY
+
+if TYPE_CHECKING:
+    from heuncli.meshes.model import TriangleMesh
 
 DEFAULT_TOLERANCE = 1e-9
 
@@ -38,12 +53,13 @@ class Meaning:
     warnings: tuple[Problem, ...]
     locations: Mapping[str, SourceLocation]
     curves: Mapping[int, m.Curve]
+    surfaces: Mapping[str, TriangleMesh]
     case: str | None
 
 
 def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
     """The scene that a document without errors means; by: what follows the references, one of them by default."""
-    r = by or Resolver(document, meaning.locations, meaning.curves)
+    r = by or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
     return m.Spec(
         title=titled(document, meaning.case),
         path=meaning.path,
@@ -59,6 +75,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
         couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
+        latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
         analysis=r.single("analysis"),
@@ -84,9 +101,13 @@ class Resolver:
     """Follows the references of one document."""
 
     def __init__(
-        self, document: f.Document, locations: Mapping[str, SourceLocation], curves: Mapping[int, m.Curve]
+        self,
+        document: f.Document,
+        locations: Mapping[str, SourceLocation],
+        curves: Mapping[int, m.Curve],
+        surfaces: Mapping[str, TriangleMesh],
     ) -> None:
-        self.document, self.locations, self.curves = document, locations, curves
+        self.document, self.locations, self.curves, self.surfaces = document, locations, curves, surfaces
 
     def entries(self, block: str, by: str) -> dict[Any, Any]:
         """What the entries of a block mean; by: the method that tells it of one."""
@@ -141,9 +162,14 @@ class Resolver:
             "to_radius",
         )
         rotation = None
-        if isinstance(shape, fs.BoxShape):
+        if isinstance(shape, fs.BoxShape | fs.MeshShape):
             rotation = body_axes(shape.orientation) if shape.orientation is not None else IDENTITY
-        return m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        meant = m.Shape(type=shape.type, rotation=rotation, **{key: getattr(shape, key, None) for key in keys})
+        if not isinstance(shape, fs.MeshShape):
+            return meant
+        return meant._replace(
+            at=shape.at or m.ZERO, scale=1.0 if shape.scale is None else shape.scale, mesh=self.surfaces[shape.file]
+        )
 
     def piece(self, piece: f.PieceEntry | None) -> m.MassProperties | None:
         return m.MassProperties(piece.mass, piece.center, tensor(piece)) if piece is not None else None
@@ -213,17 +239,64 @@ class Resolver:
             case f.ActuatorEntry():
                 return m.Actuator(self.end(load.from_), self.end(load.to), self.placed(load.value, f"{path}.value"))
             case f.SpringEntry():
-                return m.Spring(self.end(load.from_), self.end(load.to), load.stiffness, load.length, load.damping)
+                law = self.own(load.force, f"{path}.force", f"{LOADS}.{name}")
+                numbers = load.stiffness or 0.0, load.length or 0.0, load.damping or 0.0
+                return m.Spring(self.end(load.from_), self.end(load.to), *numbers, law)
             case f.TurnSpringEntry():
-                return m.TurnSpring(load.joint, load.stiffness, load.angle, load.damping)
+                law = self.own(load.torque, f"{path}.torque", load.joint)
+                return m.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
+            case f.BushingEntry():
+                return self.bushing(name, load)
+            case f.MotorEntry():
+                return self.motor(load, path)
             case f.DistributedEntry():
                 return self.distributed(load, path)
             case f.DamperEntry():
                 coefficient = constant(load.coefficient) if load.coefficient is not None else 0.0
-                return m.Damper(load.joint, coefficient, load.sliding)
+                torque, force = (self.own(getattr(load, k), f"{path}.{k}", load.joint) for k in ("torque", "force"))
+                return m.Damper(load.joint, coefficient, load.sliding, torque or force)
             case _:
                 by_load = load.coefficient, load.radius, load.length
-                return m.Friction(load.joint, load.torque, load.force, constant(load.speed), *by_load)
+                torque, force = (
+                    self.placed(value, f"{path}.{k}") if (value := getattr(load, k)) is not None else None
+                    for k in ("torque", "force")
+                )
+                return m.Friction(load.joint, torque, force, constant(load.speed), *by_load)
+
+    def own(self, law: Expression | None, path: str, owner: str) -> Expression | None:
+        """A law of what a load itself acts between: of its line's length, or of its joint's coordinate."""
+        if law is None:
+            return None
+        return renamed(self.placed(law, path), {use: (owner, use[1]) for use in law.uses if use[0] == OWN})
+
+    def motor(self, load: f.MotorEntry, path: str) -> m.Motor:
+        """ratio * value * curve(ratio * rate), within the limit of the motor itself."""
+        law = with_factor(self.placed(load.curve, f"{path}.curve"), (OWN, "rate"), load.ratio)
+        law = within(law, load.limit) if load.limit is not None else law
+        if load.value is not None:
+            law = product(self.placed(load.value, f"{path}.value"), law)
+        law = self.own(product(Expression.of(load.ratio), law), f"{path}.curve", load.joint)
+        assert law is not None
+        return m.Motor(load.joint, law)
+
+    def bushing(self, name: str, load: f.BushingEntry) -> m.Bushing:
+        rotation = body_axes(load.orientation) if load.orientation is not None else IDENTITY
+        to_rotation = body_axes(load.to_orientation) if load.to_orientation is not None else rotation
+        shift = self.elastic(name, "shift", load.stiffness, load.damping, load.preload)
+        turn = self.elastic(name, "turn", load.turning, load.turning_damping, load.turning_preload)
+        return m.Bushing(self.end(load.from_), self.end(load.to), shift, turn, rotation, to_rotation)
+
+    def elastic(self, name: str, of: str, stiffness: Any, damping: Any, preload: m.Vec | None) -> m.Elastic[m.Vec]:
+        """The three springs of a bushing's shift or turn; what has no stiffness given is a table."""
+        laws = three(stiffness)
+        given = tuple(Expression.of(x) for x in preload or m.ZERO)
+        numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
+        path = f"forces.{name}.{'stiffness' if of == 'shift' else 'turning'}"
+        for i, law in enumerate(laws):
+            if isinstance(law, Expression):
+                placed = renamed(self.placed(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{of}_{'xyz'[i]}")})
+                given = (*given[:i], total(given[i], placed), *given[i + 1 :])
+        return m.Elastic(numbers, three(damping), given)
 
     def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]
@@ -307,6 +380,22 @@ class Resolver:
         quantity, (low, high) = found
         return m.Stop(name, given.joint, quantity, low, high, given.restitution)
 
+    def latch(self, name: str, given: f.LatchEntry) -> m.Stop[str]:
+        held = held_of(given, self.document)
+        assert held is not None
+        passes = None
+        if held.at is not None:
+            beyond = f"{held.joint}.{held.quantity} > {held.at!r}"
+            kind = self.document.joints[held.joint].type
+            passes = compile_expression(beyond, Scope(joints={held.joint: kind}, in_time=True))
+        path = f"latches.{name}"
+        when, release, crossed = (
+            m.Condition(path, value.source.strip(), False, self.placed(value, f"{path}.{key}")) if value else None
+            for key, value in (("when", given.when), ("release", given.release), ("angle", passes))
+        )
+        latch = m.Latch(held.at, given.stop, held.sides, when, release, crossed, given.every)
+        return m.Stop(name, held.joint, held.quantity, None, None, 0.0, latch)
+
 
 def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Directed[m.Vec] | None:
     """A vector in world axes unless it says otherwise."""
@@ -315,6 +404,15 @@ def directed(value: m.Vec | f.VelocityInFrame | f.RateInFrame | None) -> m.Direc
     if isinstance(value, f.VelocityInFrame | f.RateInFrame):
         return m.Directed(value.vector, value.frame == "body")
     return m.Directed(value, False)
+
+
+def three(value: Any) -> tuple[Any, Any, Any]:
+    """What is given of three axes: of all alike, of each in a list or by its name; what is left out is none."""
+    if value is None:
+        return m.ZERO
+    if isinstance(value, f.ShiftLaws | f.TurnLaws):
+        return value.x, value.y, value.z
+    return value if isinstance(value, tuple) else (value, value, value)
 
 
 def area(bearing: f.BearingEntry | None) -> float | None:

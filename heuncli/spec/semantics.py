@@ -120,6 +120,36 @@ def limits_of(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], 
     return found[0] if len(found) == 1 else None
 
 
+class Held(NamedTuple):
+    """What a latch holds: a joint's coordinate, at a value, at limits of its stop (-1 lower, 1 upper), or where it is."""
+
+    joint: str
+    quantity: Literal["angle", "travel", "length"]
+    at: float | None
+    sides: tuple[int, ...]
+
+
+def held_of(latch: f.LatchEntry, document: f.Document) -> Held | None:
+    """What a latch holds, of one that is in order."""
+    stop = document.stops.get(latch.stop or "")
+    if stop is not None:
+        found = limits_of(stop)
+        asked = {"lower": (-1,), "upper": (1,), None: (-1, 1)}[latch.limit]
+        return (
+            Held(stop.joint, found[0], None, tuple(s for s in asked if found[1][s > 0] is not None)) if found else None
+        )
+    joint = document.joints.get(latch.joint or "")
+    kind = TYPES.get(joint.type) if joint is not None else None
+    if latch.joint is None or kind is None or len(fit := limitable(kind)) != 1:
+        return None
+    return Held(latch.joint, fit[0], getattr(latch, fit[0], None), ())
+
+
+def limitable(kind: Kind) -> tuple[Literal["angle", "travel", "length"], ...]:
+    """The coordinates of a kind of joint that can be limited, or held."""
+    return ("length",) if kind.keeps_distance else kind.coordinates
+
+
 def type_of(document: f.Document) -> Literal["motion", "impulse", "state", "rest"]:
     """What is solved, by default what the rest of the scene asks for."""
     analysis = document.analysis

@@ -15,7 +15,8 @@ FORCE_WORDS = {
 SHAPE_WORDS = {
     "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",
     "disc": "cylinder", "cuboid": "box", "cube": "box", "brick": "box", "ball": "sphere", "frustum": "cone",
-    "mass": "point", "particle": "point",
+    "mass": "point", "particle": "point", "stl": "mesh", "obj": "mesh", "ply": "mesh", "cad": "mesh", "surface": "mesh",
+    "polyhedron": "mesh", "trimesh": "mesh", "import": "mesh",
 }  # fmt: skip
 KEY_WORDS = {
     "com": "center", "cog": "center", "centre": "center", "cm": "center", "moments": "inertia", "tensor": "inertia",
@@ -131,7 +132,7 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
-    ("joints", "curve"), ("shapes", "mesh"), ("keys", "sweep"),
+    ("joints", "curve"), ("keys", "sweep"),
 }  # fmt: skip
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),

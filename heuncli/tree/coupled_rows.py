@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
+from heuncli.mechanism.model import Assembly
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
+from heuncli.tree.starts import pose
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
@@ -43,7 +46,23 @@ def part_row(
     )
 
 
-def sum_row(row: CoupledRow, first: int, size: float) -> ClosureRow:
+def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    """The sum of the parts' gaps at the start; coordinates: of the joints there."""
+    return sum(part.factor * _gap(part, start, coordinates) for part in row.parts)
+
+
+def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    if part.coordinates:
+        return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
+    xa, Ra, _, _ = pose(start, part.a)
+    xb, Rb, _, _ = pose(start, part.b)
+    D, e = xb + Rb @ part.q - xa - Ra @ part.p, Ra @ part.e
+    if part.kind == "rod":
+        return math.sqrt(float(D @ D))
+    return float(e @ (Rb @ part.g if part.kind == "dot" else D))
+
+
+def sum_row(row: CoupledRow, length: float, first: int, size: float) -> ClosureRow:
     """The row that is the sum of its parts, from the first of them on; its ends are those of that one."""
     return ClosureRow(
         kind=kernel.SUM,
@@ -52,7 +71,7 @@ def sum_row(row: CoupledRow, first: int, size: float) -> ClosureRow:
         p=ZERO,
         q=ZERO,
         weight=row.weight or size,
-        length=row.length or 0.0,
+        length=length,
         part=first,
         part_count=len(row.parts),
     )

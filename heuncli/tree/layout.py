@@ -43,12 +43,13 @@ class Island:
 
 @record
 class Contact:
-    """A one-sided closure row that opens and closes: a rope that catches, or one limit of a stop.
+    """A one-sided closure row that opens and closes: a rope that catches, or one limit of a stop; or a latch's.
 
-    sense: 1 an upper limit, whose gap and multiplier are not positive, -1 a lower one; joint: whose coordinate this is.
+    sense: 1 an upper limit, whose gap and multiplier are not positive, -1 a lower one, 0 a latch, which holds both ways
+    while it is closed; joint: whose coordinate this is.
     """
 
-    name: str  # of the rope (a joint) or the stop
+    name: str  # of the rope (a joint), the stop or the latch
     is_rope: bool
     joint: int
     row: int
@@ -113,6 +114,24 @@ class Layout:
         """From the joint points of the bodies, as in the spec, to their origins and centres, body axes, (n, 3) each."""
         reference = self.reference[self.order]
         return {"origin": -reference, "centre": np.array([body.center for body in self.mechanism.bodies]) - reference}
+
+    @cached_property
+    def latches(self) -> tuple[int, ...]:
+        """Which of the contacts are latches."""
+        return tuple(i for i, contact in enumerate(self.contacts) if contact.sense == 0)
+
+    @property
+    def all_open(self) -> Array:
+        """What is told of contacts of which none is closed: a number each, then of each latch where it holds."""
+        places = self.tables["closures"]["length"][[self.contacts[i].row for i in self.latches]]
+        return np.concatenate([np.zeros(len(self.contacts)), places])
+
+    def closed(self, holding: Array) -> Array:
+        """The same of others (..., n): 1 of each contact that is closed, also by others, 0 of one that is open."""
+        shut = np.array(holding, dtype=float)
+        n = len(self.contacts)
+        shut[..., :n] = shut[..., :n] > 0.0
+        return shut
 
     @property
     def tree_freedoms(self) -> int:

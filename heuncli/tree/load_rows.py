@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.expressions.programs import Expression, Pack, Variable
+from heuncli import tolerances
+from heuncli.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.joint_kinds import JOINTS
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
+from heuncli.mechanism.model import GROUND, Bushing, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.shapes.rotations import perpendicular
@@ -26,6 +27,7 @@ JOINT_LOADS = {  # of the turning, of the sliding
     "friction": (kernel.TURN_FRICTION, kernel.SHIFT_FRICTION),
 }
 PRESSES = {"whole": kernel.WHOLE, "across": kernel.ACROSS, "ends": kernel.ENDS}
+ONE = (1.0, 0.0, 0.0)  # of friction without a size of its own, by what presses
 Components = tuple[Program, Program, Program]
 
 
@@ -82,7 +84,11 @@ def with_loads(frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms
     vector = found["vector"].view(flat(found.dtype["vector"]))
     for load, rows in mechanism.load_rows():
         for i, e in enumerate(load.values):
-            vector[rows, i] = 0.0 if e.constant is None else e.constant
+            constant = 0.0 if e.constant is None else e.constant
+            if isinstance(load, Bushing):
+                vector[rows.start + i // 3, i % 3] = constant
+            else:
+                vector[rows, i] = constant
     tables = no_loads() | {"loads": found}
     if programs.pack.code:
         tables["watches"] = table_of(kernel.Watch, watch_rows(mechanism, programs))
@@ -103,12 +109,14 @@ class _LoadRows:
         self.mechanism, self.frame = mechanism, frame
         self.made: list[LoadRow] = []
         for load, own in zip(mechanism.loads, programs, strict=True):
-            x, y, z = own + (NO_PROGRAM,) * (3 - len(own))
+            x, y, z = (own + (NO_PROGRAM,) * (3 - len(own)))[:3]
             values = x, y, z
             if isinstance(load, PointLoad):
                 self._point_load(load, values)
             elif isinstance(load, PairLoad):
                 self._pair_load(load, values)
+            elif isinstance(load, Bushing):
+                self._bushing(load, own)
             else:
                 self._joint_load(load, values)
 
@@ -134,6 +142,27 @@ class _LoadRows:
             )
         )
 
+    def _bushing(self, load: Bushing, programs: tuple[Program, ...]) -> None:
+        """Two rows: of the shift, of the turn."""
+        parts = (kernel.BUSHING_SHIFT, load.shift, programs[:3]), (kernel.BUSHING_TURN, load.turn, programs[3:])
+        for kind, elastic, own in parts:
+            self.made.append(
+                LoadRow(
+                    kind,
+                    self.frame.in_tree(load.a),
+                    self.frame.in_tree(load.b),
+                    *own,
+                    ZERO,
+                    p=self.frame.relative(load.a, load.p),
+                    q=self.frame.relative(load.b, load.q),
+                    length=tolerances.LARGEST_TURN,
+                    frame=load.frame.ravel(),
+                    to_frame=load.to_frame.ravel(),
+                    stiffnesses=elastic.stiffness,
+                    resistances=elastic.damping,
+                )
+            )
+
     def _joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]
         kind = JOINTS[joint.kind]
@@ -146,7 +175,7 @@ class _LoadRows:
                 self.frame.in_tree(joint.a),
                 self.frame.in_tree(joint.b),
                 *values,
-                ZERO,
+                ONE if load.kind == "friction" else ZERO,
                 in_body=int(kind.has_one_axis),
                 p=self.frame.relative(joint.a, joint.p),
                 q=self.frame.relative(joint.b, joint.q),
@@ -207,14 +236,26 @@ def variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[
     """The variables of the programs; the first is the time, which is no coordinate."""
     joints = mechanism.joints
     by_name = {(joints[f.joint].name, f.quantity): i for i, f in enumerate(frame.freedoms) if f.joint >= 0}
+    own = {f"{LOADS}.{load.name}": rows.start for load, rows in mechanism.load_rows()}
     rows = [VariableRow()]
     for name, quantity in (use for use in variables if not isinstance(use, str)):
         if name in mechanism.points:
             rows.append(point_row(frame, mechanism.points[name], quantity))
             continue
+        if name in own:
+            rows.append(load_row(own[name], quantity))
+            continue
         base = {"rate": "angle", "speed": "travel"}.get(quantity, quantity)
         rows.append(VariableRow(by_name[name, base], int(base != quantity)))
     return rows
+
+
+def load_row(row: int, quantity: str) -> VariableRow:
+    """The variable that is a part of what a load acts between; row: the first of its rows."""
+    if quantity in ("length", "speed"):
+        return VariableRow(is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE)
+    of, _, axis = quantity.partition("_")
+    return VariableRow(is_point=kernel.OF_LOAD, load=row + int(of == "turn"), part="xyz".index(axis))
 
 
 def point_row(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableRow:
@@ -222,7 +263,7 @@ def point_row(frame: LayoutFrame, point: NamedPoint, quantity: str) -> VariableR
     axis = "xyz".index(quantity[-1])
     return VariableRow(
         is_rate=int(quantity.startswith("v")),
-        is_point=1,
+        is_point=kernel.AT_POINT,
         body=frame.in_tree(point.body),
         q=frame.relative(point.body, point.place),
         direction=point.axes[axis],

@@ -21,7 +21,7 @@ from heuncli.mechanism.model import (
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
-from heuncli.tree.coupled_rows import ends, part_row, sum_row
+from heuncli.tree.coupled_rows import as_assembled, ends, part_row, sum_row
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
@@ -134,6 +134,7 @@ class _Builder:
         self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
         self.body_rows: list[BodyRow] = []
         self.freedom_rows: list[FreedomRow] = []
+        self.coordinates: dict[tuple[int, str], float] = {}  # at the start, of the tree's joints
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
@@ -212,6 +213,7 @@ class _Builder:
             driven, program = int(program is not None), program or NO_PROGRAM
             self.freedom_rows.append(FreedomRow(kind, *places, driven, answer, i, program, direction))
             self.freedoms.append(Freedom(h.joint, quantity, *places))
+            self.coordinates[h.joint, quantity] = x
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + own + weights + own
         return GroupRow(begin, rates_at, len(self.y))
@@ -317,6 +319,7 @@ class _Builder:
             for limit, sense in ((stop.low, -1), (stop.high, 1)):
                 if limit is not None:
                     self._limit(stop, limit, sense)
+        self._latches()
 
     def coupled_rows(self) -> None:
         """The rows of the couplings, which come after those of the cut joints."""
@@ -326,7 +329,8 @@ class _Builder:
                 if row.tension_only:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
-                self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
+                length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
+                self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
                 self.part_rows += [part_row(part, self.in_tree, self.relative, freedoms) for part in row.parts]
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
@@ -344,11 +348,19 @@ class _Builder:
         opens = len(self.contacts) if restitution is not None else 0
         self.one_sided.append(ContactRow(row, 1, opens))
 
-    def _limit(self, stop: Stop, limit: float, sense: int) -> None:
-        """The row of one limit of a stop."""
+    def _latches(self) -> None:
+        """The rows of all latches."""
+        latches = [stop for stop in self.mechanism.stops if stop.latch is not None]
+        count = len(self.contacts) + len(latches)
+        for k, stop in enumerate(latches):
+            assert stop.latch is not None
+            self._limit(stop, stop.latch.at or 0.0, 0, held_at=count + k + 1)
+
+    def _limit(self, stop: Stop, limit: float, sense: int, held_at: int = 0) -> None:
+        """The row of one limit of a stop, or of a latch."""
         joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts)))
+        self.one_sided.append(ContactRow(row, sense, len(self.contacts), held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
         elif stop.quantity == "travel":

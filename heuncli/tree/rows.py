@@ -87,6 +87,10 @@ class LoadRow:
     row: int = 0
     row_count: int = 0
     reach: float = 0.0
+    frame: Sequence[float] = (0.0,) * 9
+    to_frame: Sequence[float] = (0.0,) * 9
+    stiffnesses: Vector = ZERO
+    resistances: Vector = ZERO
 
 
 @record
@@ -135,6 +139,7 @@ class ContactRow:
     row: int
     sense: int
     opens: int
+    held_at: int = 0
 
 
 @record
@@ -151,12 +156,15 @@ class CounterRow:
 class VariableRow:
     """A coordinate that expressions use, or a point's place along a direction; of the time, which is neither, zero.
 
+    Or a part of what a load acts between; load: its row.
     q: the point from its body's joint point, its axes; direction: world axes.
     """
 
     freedom: int = 0
     is_rate: int = 0
     is_point: int = 0
+    load: int = 0
+    part: int = 0
     body: int = 0
     q: Vector = ZERO
     direction: Vector = ZERO

@@ -12,7 +12,7 @@ from scipy.special import ellipk, ellipkinc
 
 from heuncli.errors import SolveError
 from heuncli.integration.check.changes import Changes
-from heuncli.integration.run.conditions import Conditions, coordinates_at
+from heuncli.integration.conditions import Conditions, coordinates_at
 from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study

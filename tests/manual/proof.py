@@ -1,6 +1,6 @@
 """Tables of the published cases, as `heun check --references` tells them: how near heun comes, and of what source.
 
-The cases are solved, where the first is asked for.
+The cases are solved where the tables are asked for, not where this is imported.
 """
 
 from __future__ import annotations
@@ -21,8 +21,11 @@ def row(name: str) -> tuple[str, ...]:
     return f"`{name}`", case.about, *told
 
 
-HEAD = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
-PROOF = Table(README, "Proof", HEAD, [row(name) for name in names()])
-SOURCES = Table(
-    "references", "On your machine", ("case", "source"), [(f"`{name}`", case_of(name).source) for name in names()]
-)
+def tables() -> tuple[Table, Table]:
+    """What stands below the headings Proof and On your machine."""
+    head = ("case", "what", "numbers", "which are", "digits", "last digits", "of the largest")
+    sources = [(f"`{name}`", case_of(name).source) for name in names()]
+    return (
+        Table(README, "Proof", head, [row(name) for name in names()]),
+        Table("references", "On your machine", ("case", "source"), sources),
+    )

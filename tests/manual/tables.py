@@ -236,9 +236,9 @@ def renew(table: Table) -> None:
 
 
 if __name__ == "__main__":
-    from tests.manual.proof import PROOF, SOURCES  # which takes a second or two: the cases are solved
+    from tests.manual import proof
 
-    for each in (*TABLES, PROOF, SOURCES):
+    for each in (*TABLES, *proof.tables()):
         renew(each)
     codes.PAGE.write_text(codes.written(), encoding="utf-8")
     HELP.write_text(help_of_typer(), encoding="utf-8")

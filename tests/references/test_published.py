@@ -19,7 +19,7 @@ from heuncli.published.compared import AGREES, COARSE, DIFFERS, OPEN, compared
 from heuncli.published.files import names, numbers_of, spec_of
 from heuncli.published.printed import printed
 from heuncli.spec.load import load
-from tests.manual.proof import PROOF, SOURCES
+from tests.manual import proof
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS, tables_below
@@ -206,5 +206,5 @@ def test_its_spec_is_handed_out(heun: Heun, folder: Path) -> None:
 
 
 def test_the_tables_of_cases_and_sources() -> None:
-    for table in (PROOF, SOURCES):
+    for table in proof.tables():
         assert table.text in tables_below(TEXTS[table.page], table.heading), "python -m tests.manual.tables writes it"

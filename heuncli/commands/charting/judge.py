@@ -17,6 +17,7 @@ from heuncli.integration.check.estimate import recovered_at, recovered_together
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.check.shared_blows import between_strikes
 from heuncli.integration.trajectory import Trajectory
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask
@@ -45,13 +46,14 @@ class CertainLoadErrors(LoadErrors):
         """Terms are the reference's: beside those of a run that is lost its own loads would count as rounding."""
         super().take(name, values, rounding, np.repeat(terms[0::2], 2), more)
 
-    def add_joints(self, joints: Sequence[JointLoads], terms: BalanceTerms) -> None:
-        """Those of the joints of which something is certain."""
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+        """Those of the joints of which something is certain; of couplings where nothing is open."""
         kept = []
         for load in joints:
             force, moment = self.certain[load.joint.name]
             kept.append(replace(load, force=load.force * force, moment=load.moment * moment))
-        super().add_joints(kept, terms)
+        everything = all(bool(np.all(whole)) for pair in self.certain.values() for whole in pair)
+        super().add_joints(kept, coupled if everything else (), terms)
 
 
 @record

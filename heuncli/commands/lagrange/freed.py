@@ -103,6 +103,7 @@ def effort(mechanism: Mechanism, coordinate: str, value: float) -> tuple[Load, .
     )
 
 
-def contacts_of(layout: Layout) -> list[tuple[str, bool, int]]:
-    """What tells the contacts apart."""
-    return [(contact.name, contact.is_rope, contact.sense) for contact in layout.contacts]
+def contacts_of(layout: Layout) -> list[tuple[str, bool, int | None]]:
+    """What tells the contacts apart, then the places at which latches hold."""
+    contacts = [(contact.name, contact.is_rope, contact.sense) for contact in layout.contacts]
+    return [*contacts, *((layout.contacts[i].name, False, None) for i in layout.latches)]

@@ -158,7 +158,7 @@ def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: floa
     unit, moved = scene.states(there), scene.states(there)
     unit[:, place] /= span
     moved[:, place] *= rate / span
-    at, holding = np.full(len(values), t), np.zeros(len(layout.contacts))
+    at, holding = np.full(len(values), t), layout.all_open
     answered = runner.recovered(at, unit, causes=True, holding=holding)
     states = body_states(layout, answered)
     turning = np.einsum("tnij,tnj->tni", states.R, body_spins(layout, states))

@@ -20,8 +20,8 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.integration.check.shared_blows import matched
+from heuncli.integration.conditions import Conditions, Coordinates, coordinates_at
 from heuncli.integration.contacts.blows import Jump
-from heuncli.integration.run.conditions import Conditions, Coordinates, coordinates_at
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
 from heuncli.records import record, replace

@@ -114,10 +114,12 @@ class RightSides:
     causes: tuple[str, ...]
 
 
-def right_sides(evaluator: Evaluator, given: GivenBlow, state: Array) -> RightSides:
-    """What is given at a state (n,) just before it acts; all contacts are open there, and columns of their own."""
+def right_sides(evaluator: Evaluator, given: GivenBlow, state: Array, holding: Array) -> RightSides:
+    """What is given at a state (n,) just before it acts; holding: all contacts are open, and columns of their own, but
+    for latches that hold.
+    """
     layout, mechanism = evaluator.layout, evaluator.layout.mechanism
-    still = evaluator.recovered(np.array([given.before]), state[None, :], holding=np.zeros(len(layout.contacts)))
+    still = evaluator.recovered(np.array([given.before]), state[None, :], holding=holding)
     impulses = tuple(impulse(layout, still.bodies[0], i) for i in given.blows)
     n_b, n_u = len(layout.place), len(layout.freedoms) + len(layout.rows)
     loads, jumps = [column(layout, still.bodies[0], one) for one in impulses], [np.zeros(n_u)] * len(impulses)
@@ -130,7 +132,7 @@ def right_sides(evaluator: Evaluator, given: GivenBlow, state: Array) -> RightSi
 
 def strike(evaluator: Evaluator, given: GivenBlow, state: Array, time: float) -> Jump:
     """The blow that is given at a state (n,) of a scene without contacts."""
-    sides = right_sides(evaluator, given, state)
+    sides = right_sides(evaluator, given, state, evaluator.layout.all_open)
     found = blows(
         evaluator.workspace, given.before, sides.still.states[0], np.array(sides.loads), np.array(sides.jumps)
     )

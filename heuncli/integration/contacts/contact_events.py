@@ -1,6 +1,7 @@
 """Events of contacts: what is struck at an instant of a run, by which impulses, and what is held from there on.
 
-touching.py finds the contacts that touch, restitution.py the impulses, resting.py those that stay closed.
+touching.py finds the contacts that touch, latches.py what catches and lets go, restitution.py the impulses, resting.py
+the contacts that stay closed.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from heuncli.integration.contacts.blows import (
     right_sides,
     state_behind,
 )
+from heuncli.integration.contacts.latches import UNWATCHED, Bolts, Catch, Latches, with_catches, work_of_catches
 from heuncli.integration.contacts.resting import rests, short_flights, undecided_by_friction
 from heuncli.integration.contacts.restitution import Struck, strikes, undecided
 from heuncli.integration.contacts.touching import Touching, answerable, answers, touching
@@ -97,7 +99,8 @@ class Contacts:
     def __init__(self, evaluator: Evaluator, last: float) -> None:
         self.evaluator, self.last = evaluator, last
         self.layout = evaluator.layout
-        self.holding = np.zeros(len(self.layout.contacts))
+        self.holding = self.layout.all_open
+        self.latches = Latches(self.layout)
         self.strikes: dict[str, int] = {}
         self.notes: dict[str, None] = {}
         self.since, self.at_once = -1.0, 0
@@ -107,18 +110,32 @@ class Contacts:
         near = tolerances.KERNEL["least_step"] * self.last
         self.at_once = self.at_once + 1 if t - self.since <= near else 0
         self.since = t
-        if self.at_once > AT_ONCE + 4 * len(self.holding):
+        if self.at_once > AT_ONCE + 4 * len(self.layout.contacts):
             raise undecided(t, max(self.strikes, key=lambda name: self.strikes[name], default=""))
 
-    def meet(self, given: GivenBlow, state: Array, time: float, row: int | None) -> Jump | None:
-        """The blow at an instant, where there is one; row: of the contact that closed or opened there."""
-        sides = right_sides(self.evaluator, given, state)
-        touch = touching(self.layout, sides.still, self.holding > 0.0, row, self.last)
+    def meet(
+        self, given: GivenBlow, state: Array, time: float, row: int | None, said: Bolts | None = None
+    ) -> Jump | None:
+        """The blow at an instant, where there is one.
+
+        row: of the contact that closed or opened there; said: what the conditions of latches say there, by the state's
+        own numbers where it is not told.
+        """
+        latches, closed = self.latches, self.holding > 0.0
+        said = said or latches.freely(given.before, state)
+        released = latches.let_go(said)
+        sides = right_sides(self.evaluator, given, state, latches.holding())
+        touch = touching(self.layout, sides.still, closed, row, self.last)
+        catches = latches.catch(said, sides.still, touch)
+        touch = touch.some(latches.free_of(touch))
+        sides = with_catches(self.layout, sides, catches)
         found, pressed = self.pose(given, sides, touch)
-        outcome = self.solve(given, sides, found.columns, pressed)
-        self.holding = np.zeros(len(self.layout.contacts))
+        outcome = self.solve(given, sides, found.columns, pressed, catches)
+        self.holding = latches.holding()
         self.holding[touch.which] = outcome.holding
+        self.holding[latches.unwatched] = UNWATCHED
         self.tell(time, touch, outcome)
+        self.tell_latches(time, released, catches)
         bears, n = np.flatnonzero(outcome.struck.impulses), len(sides.loads)
         if not len(bears) and not n:
             return None
@@ -127,6 +144,7 @@ class Contacts:
         found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
         sides = replace(sides, still=self.shown(sides.still, touch, outcome.struck))
         struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
+        struck += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
         blow = BlowResult(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
         jump = jump_of(self.evaluator, given, sides, blow)
         terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, sides.impulses)
@@ -135,6 +153,7 @@ class Contacts:
 
     def pose(self, given: GivenBlow, sides: RightSides, touch: Touching) -> tuple[Answered, Pressed]:
         """The columns of what is given and of each contact that touches, and the problem they make."""
+        self.evaluator.workspace.hold(self.latches.holding())
         n, n_u = len(sides.loads), len(self.layout.freedoms) + len(self.layout.rows)
         loads = np.array([*sides.loads, *touch.loads]).reshape(-1, len(self.layout.place), 6)
         jumps = np.array([*sides.jumps, *([np.zeros(n_u)] * len(touch.which))]).reshape(-1, n_u)
@@ -143,9 +162,11 @@ class Contacts:
         A = 0.5 * (rates[:, n:] + rates[:, n:].T)
         return found, Pressed(touch, A, answerable(self.layout, touch, A), rates[:, :n].sum(axis=1))
 
-    def solve(self, given: GivenBlow, sides: RightSides, units: Columns, pressed: Pressed) -> ContactOutcome:
+    def solve(
+        self, given: GivenBlow, sides: RightSides, units: Columns, pressed: Pressed, catches: list[Catch]
+    ) -> ContactOutcome:
         """Impulses, then who rests; a rebound too short to be seen is none."""
-        touch, open_ = pressed.touch, np.zeros(len(self.holding))
+        touch, open_ = pressed.touch, self.latches.holding()
         at_rest = np.zeros(len(touch.which), dtype=bool)
         while True:
             struck = strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest)
@@ -164,12 +185,13 @@ class Contacts:
             struck, columns, whole = self.refined(given, sides, Unrefined(touch, struck, units))
             after, work = state_behind(self.layout, given, sides, whole)
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
+        work += work_of_catches(self.layout, catches, columns.multipliers)
         self.bring_to_rest(sides.still.states[0], after)
         return ContactOutcome(struck, holding, at_rest, columns, after, work)
 
     def require_decided(self, t: float, after: Array, pressed: Pressed, holding: Array, rate: Array) -> None:
         """Raise SolveError where friction by what joints carry makes other contacts bear than those that are held."""
-        touch, held = pressed.touch, np.zeros(len(self.holding))
+        touch, held = pressed.touch, self.latches.holding()
         held[touch.which] = holding
         at = self.evaluator.recovered(np.array([t]), after[None, :], holding=held)
         wrong = undecided_by_friction(touch, pressed.A, holding, rate, at, self.layout)
@@ -194,7 +216,7 @@ class Contacts:
         load = np.sum([np.zeros((len(self.layout.place), 6)), *sides.loads], axis=0)
         jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *sides.jumps], axis=0)
         jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
-        holding = np.zeros(len(self.holding))
+        holding = self.latches.holding()
         holding[touch.which[own]] = 1.0
         self.evaluator.workspace.hold(holding)
         whole = blows(self.evaluator.workspace, given.before, sides.still.states[0], load[None], jump[None]).columns
@@ -237,9 +259,9 @@ class Contacts:
 
     def shown(self, still: Recovered, touch: Touching, struck: Struck) -> Recovered:
         """The answers before the blow, with the contacts that take part in it: what they leave open is then seen."""
-        rows, closed = still.rows.copy(), np.zeros(len(self.layout.contacts))
+        rows, closed = still.rows.copy(), self.latches.holding()
         closed[touch.which] = struck.closed
-        if not closed.any():
+        if np.array_equal(self.layout.closed(closed), still.holding[0]):
             return still
         chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
         for name in ("chosen", "closed"):
@@ -268,3 +290,10 @@ class Contacts:
             if not count:
                 continue
             self.notes[f"{name} rests {at}, after {count} strikes: further ones are too small to be seen"] = None
+
+    def tell_latches(self, t: float, released: list[str], catches: list[Catch]) -> None:
+        """Put down what latches catch, and what they let go."""
+        for name in released:
+            self.notes[f"{name} lets go at t = {t:.6g} s"] = None
+        for catch in catches:
+            self.notes[f"{self.layout.contacts[catch.contact].name} catches at t = {t:.6g} s"] = None

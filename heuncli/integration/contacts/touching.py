@@ -46,12 +46,16 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     rows, bodies = at.rows[0], at.bodies[0]
     found = []
     for i, contact in enumerate(layout.contacts):
+        if contact.sense == 0:
+            continue  # a latch
         gap = -contact.sense * float(rows["gap"][contact.row])
         near = tolerances.CONTACT_TOUCHES * terms_of_gap(layout, bodies, contact)
         if closed[i] or contact.row == event or gap <= near:
             found.append(i)
     own = [layout.contacts[i] for i in found]
-    loads = np.array([unit_load(layout, bodies, rows, contact) for contact in own]).reshape(len(own), len(bodies), 6)
+    loads = np.array([unit_load(layout, bodies, rows, contact, -contact.sense) for contact in own]).reshape(
+        len(own), len(bodies), 6
+    )
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
     reaches = tolerances.KERNEL["touching"] * terms
@@ -82,11 +86,11 @@ def point(layout: Layout, bodies: Table, contact: Contact) -> Array:
     return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
 
 
-def unit_load(layout: Layout, bodies: Table, rows: Table, contact: Contact) -> Array:
-    """What a contact that bears 1 puts on the bodies, (n_b, 6)."""
+def unit_load(layout: Layout, bodies: Table, rows: Table, contact: Contact, way: float) -> Array:
+    """What a contact whose multiplier is `way` puts on the bodies, (n_b, 6)."""
     row = layout.tables["closures"][contact.row]
     Q = point(layout, bodies, contact)
-    f, m = (-contact.sense * rows[of][contact.row] for of in ("f", "m"))
+    f, m = (way * rows[of][contact.row] for of in ("f", "m"))
     load = np.zeros((len(bodies), 6))
     for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
         if body >= 0:

@@ -21,6 +21,7 @@ from heuncli.tree.layout import Layout
 
 if TYPE_CHECKING:  # loaded where something opens and closes
     from heuncli.integration.contacts.contact_events import Contacts
+    from heuncli.integration.contacts.latches import Bolts
 
 
 class Interruptions:
@@ -53,32 +54,36 @@ class Interruptions:
             self.take(jump)
         return None
 
-    def strike(self, t: float, blows: tuple[int, ...]) -> str | None:
-        """Do the blows whose conditions became true at an instant that the run has reached; as `until` does others."""
-        jump = self.meet(GivenBlow(t, t, blows, {}), t)
+    def strike(self, t: float, blows: tuple[int, ...], said: Bolts | None) -> str | None:
+        """Do the blows whose conditions became true at an instant that the run has reached; as `until` does others.
+
+        said: what the conditions of latches say there.
+        """
+        jump = self.meet(GivenBlow(t, t, blows, {}), t, said=said)
         rope = None if jump is None else pushing(self.scene.layout, jump)
         if jump is not None and rope is None:
             self.take(jump)
         return rope
 
-    def meet(self, given: GivenBlow, time: float, row: int | None = None) -> Jump | None:
+    def meet(self, given: GivenBlow, time: float, row: int | None = None, said: Bolts | None = None) -> Jump | None:
         """The blow that is given at the state reached, and that of its contacts; row: of the one that closed."""
         state = self.moving.state(time, self.progress.integrated_state)
         if self.contacts is None:
             return strike(self.scene, given, state, time)
-        return self.contacts.meet(given, state, time, row)
+        return self.contacts.meet(given, state, time, row, said)
 
-    def settle(self, t: float, row: int | None = None) -> None:
+    def settle(self, t: float, row: int | None = None, said: Bolts | None = None) -> None:
         """Do what contacts do at an instant that the run has reached.
 
-        row: the closure row, in what is integrated, of the contact that closed or opened there, if one did.
+        row: the closure row, in what is integrated, of the contact that closed or opened there, if one did; said: what
+        the conditions of latches say there, if it is told.
         """
         if self.contacts is None:
             return
         if row is not None:
             self.contacts.count(t)
             row = self.scene.layout.contacts[self.moving.contact(row)].row
-        jump = self.meet(GivenBlow(t, t, (), {}), t, row)
+        jump = self.meet(GivenBlow(t, t, (), {}), t, row, said)
         if jump is not None:
             self.take(jump)
 

@@ -41,10 +41,10 @@ from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 if TYPE_CHECKING:  # loaded where they are watched
-    from heuncli.integration.run.conditions import EndingCondition
+    from heuncli.integration.run.ending import EndingCondition
     from heuncli.integration.run.event_frequency import EventWatch
     from heuncli.integration.run.stiffness import StiffnessWatch
-    from heuncli.integration.run.triggers import Triggers
+    from heuncli.integration.run.triggers import Due, Triggers
 
 
 class Ending(NamedTuple):
@@ -119,12 +119,12 @@ class Stepper:
             code = self.advance()
             if code == TURNED:
                 ends, due = self.ends_here(), self.due()
-                if due:
+                if due is not None:
                     begin, rope = self.strike(begin, segment, due)
                     if rope is not None:
                         return Ending(just_before(begin), rope)
                 if ends:
-                    if due:
+                    if due is not None:
                         self.advance()  # to the branches behind the blow; no step is taken
                     break
             self.look(code, segment)
@@ -155,14 +155,14 @@ class Stepper:
         if self.triggers is not None:
             self.triggers.leave()
 
-    def due(self) -> tuple[int, ...]:
-        """The blows whose conditions became true at the instant reached."""
+    def due(self) -> Due | None:
+        """What conditions ask for at the instant reached, if they do."""
         if self.triggers is None:
-            return ()
+            return None
         return self.triggers.due(self.progress.t, self.progress.integrated_state)
 
-    def strike(self, begin: float, segment: Segment, due: tuple[int, ...]) -> tuple[float, str | None]:
-        """Blows at the instant reached, which end a piece; where the next one begins.
+    def strike(self, begin: float, segment: Segment, due: Due) -> tuple[float, str | None]:
+        """Blows and latches at the instant reached, which end a piece; where the next one begins.
 
         And the rope, if there is one, that would have to push in them.
         """
@@ -170,7 +170,7 @@ class Stepper:
         if t > begin:
             self.pieces.add(np.array([[begin, segment.before_end, t]]))
         self.leave()
-        rope = self.interruptions.strike(t, due)
+        rope = self.interruptions.strike(t, due.blows, due.said)
         if rope is None:
             self.begin(Segment(t, segment.before_end, segment.end))
         return t, rope
@@ -199,8 +199,9 @@ class Stepper:
         t = self.progress.t
         if t > begin:
             self.pieces.add(np.array([[begin, segment.before_end, t]]))
+        said = None if self.triggers is None else self.triggers.said_at_contact(t, self.progress.integrated_state)
         self.leave()
-        self.interruptions.settle(t, self.progress.kernel.loop.contact)
+        self.interruptions.settle(t, self.progress.kernel.loop.contact, said)
         self.begin(Segment(t, segment.before_end, segment.end))
         return t
 
@@ -232,7 +233,7 @@ class Stepper:
             branches=steps.held_branches(), turned=steps.column("turned"), undecided=kernel.loop.undecided,
             stopped=ending.rope if ending is not None else None, ended=ending is not None and ending.rope is None,
             behind=np.array(progress.moving.layout.pack.expressions.branches()),
-            blows=tuple(self.interruptions.done), holding=steps.holding(len(progress.scene.layout.contacts)),
+            blows=tuple(self.interruptions.done), holding=steps.holding(len(progress.scene.layout.all_open)),
             notes=self.interruptions.notes + (self.triggers.notes if self.triggers is not None else ()),
         )  # fmt: skip
 
@@ -241,14 +242,16 @@ def until_of(layout: Layout) -> EndingCondition | None:
     """The condition that ends the runs of a scene, if there is one."""
     if not any(condition.ends for condition in layout.mechanism.conditions):
         return None
-    from heuncli.integration.run.conditions import EndingCondition  # few scenes have one
+    from heuncli.integration.run.ending import EndingCondition  # few scenes have one
 
     return EndingCondition(layout)
 
 
 def triggers_of(layout: Layout, last: float) -> Triggers | None:
-    """The blows of a scene that hang on conditions, where there are any."""
-    if all(blow.when is None for blow in layout.mechanism.blows):
+    """The blows and latches of a scene that hang on conditions, where there are any."""
+    mechanism = layout.mechanism
+    latches = (stop.latch for stop in mechanism.stops if stop.latch is not None)
+    if all(blow.when is None for blow in mechanism.blows) and not any(latch.conditions for latch in latches):
         return None
     from heuncli.integration.run.triggers import Triggers  # few scenes have any
 

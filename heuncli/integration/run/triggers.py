@@ -1,4 +1,4 @@
-"""Blows that strike when a condition becomes true: which of them at an instant that a run has reached.
+"""Blows that strike, and latches that catch or let go, by conditions: which at an instant that a run has reached.
 
 The kernel ends a step where a branch of a condition turns, and stops there and where a piece begins. A condition that
 was false, and is true as the branches stand, became true. A piece that begins takes its branches afresh from the state,
@@ -12,15 +12,24 @@ from collections.abc import Iterator
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
-from heuncli.integration.run.conditions import Conditions, Coordinates, coordinates_in
+from heuncli.integration.conditions import Conditions, Coordinates, coordinates_in
+from heuncli.integration.contacts.latches import Bolts, bolts
+from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
 AT_ONCE = 4  # blows of a condition at one instant: more follow each other without end
 
 
+class Due(NamedTuple):
+    """Blows that are due at an instant, and what the conditions of latches say there, where there are any."""
+
+    blows: tuple[int, ...]
+    said: Bolts | None
+
+
 class Triggers:
-    """The blows of a scene that hang on conditions. Remembers what was true, and which have struck.
+    """The blows and latches of a scene that hang on conditions. Remembers what was true, and which have struck.
 
     layout: of what is integrated. last: the end of the run [s].
     """
@@ -34,6 +43,8 @@ class Triggers:
         self.was: list[float] = []
         self.begins: list[float] = []
         self.struck: dict[int, int] = dict.fromkeys(self.numbers, 0)
+        self.latched = any(stop.latch is not None for stop in layout.mechanism.stops)
+        self.said: Bolts | None = None  # of the latches, when it was looked at last
         self.left: list[float] | None = None  # the branches held at the end of the last piece
         self.since, self.at_once = -1.0, 0
 
@@ -67,14 +78,23 @@ class Triggers:
                 q, u, a = there[use]
                 yield {**there, use: (q + way, u, a)}
 
-    def due(self, t: float, state: Array) -> tuple[int, ...]:
+    def due(self, t: float, state: Array) -> Due | None:
         """The blows whose conditions became true at t; what is true at the start strikes nothing until it was false.
 
-        Raises SolveError for too many at one instant.
+        Or what the conditions of latches say, where that is something else than before. Raises SolveError for too many
+        blows at one instant.
         """
         branches = self.layout.pack.expressions.branches()
         now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))
         was, self.was = self.was, now
+        said, before = bolts(self.layout, now, was), self.said
+        self.said = said
+        changed = self.latched and (before is None or any(said.passed) or before[:2] != said[:2])
+        blows = self.blows_due(t, was, now)
+        return Due(blows, said if self.latched else None) if blows or changed else None
+
+    def blows_due(self, t: float, was: list[float], now: list[float]) -> tuple[int, ...]:
+        """The blows whose conditions became true at t."""
         if t <= tolerances.SIDE_BY_SIDE * self.last:  # what turns by rounding of the start was so before
             self.begins = now
             return ()
@@ -86,6 +106,19 @@ class Triggers:
         if due:
             self.count(t, due)
         return due
+
+    def said_at_contact(self, t: float, state: Array) -> Bolts | None:
+        """What the conditions of latches say where a contact closes or opens.
+
+        One that becomes true by the rounding of the state is true there: so does one that names the stop's own limit.
+        """
+        if not self.latched:
+            return None
+        there = coordinates_in(self.layout, t, state)
+        held = self.conditions.held(t, self.layout.pack.expressions.branches(), there)
+        count = range(len(held))
+        beside = [[self.conditions.free(k, t, 0.0, other) for k in count] for other in (there, *self.beside(there))]
+        return bolts(self.layout, [max(truths) for truths in zip(held, *beside, strict=True)])
 
     def count(self, t: float, due: tuple[int, ...]) -> None:
         """Blows at an instant. Raises SolveError for too many at one."""

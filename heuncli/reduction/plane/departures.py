@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
-from heuncli.mechanism.model import Joint, PairLoad, PointLoad
+from heuncli.mechanism.model import Bushing, Joint, PairLoad, PointLoad
 from heuncli.records import record
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
@@ -123,6 +123,8 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             if load.a != load.b and not (seen.stays(load.a) and seen.stays(load.b)):
                 for end, point in load.points:
                     yield from _beside(seen, height, end, point, f"a point of {name}")
+        elif isinstance(load, Bushing):
+            yield from _bushing(seen, load, height)
         elif load.kind == "turn_spring":
             if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
                 yield Departure(f"{name} turns about an axis in it", 1.0, True)
@@ -131,6 +133,23 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             turns = "turning" in JOINTS[joint.kind].motions
             if turns != seen.stances[load.joint].along and not _all_stay(seen, joint):
                 yield Departure(f"{name} acts out of it", 1.0, True)
+
+
+def _bushing(seen: View, load: Bushing, height: float) -> Iterator[Departure]:
+    """A bushing between bodies that are not held in the plane: level, and one of its axes along the normal."""
+    if load.a == load.b or (seen.stays(load.a) and seen.stays(load.b)):
+        return
+    name = f"forces.{load.name}"
+    for end, point in load.points:
+        yield from _beside(seen, height, end, point, f"a point of {name}")
+    along = [F.T @ seen.normal_in(end) for end, F in ((load.a, load.frame), (load.b, load.to_frame))]
+    k = int(np.argmax(np.abs(along[0])))
+    askew = float(np.abs(along[0] - along[1]).max() + np.abs(np.delete(along[0], k)).max())
+    if askew > tolerances.FLAT:
+        yield Departure(f"{name} has no axis along the normal", askew, True)
+    shift, turn = (np.array([e.constant != 0.0 for e in part.given]) for part in (load.shift, load.turn))
+    if shift[k] or np.delete(turn, k).any():
+        yield Departure(f"{name} pushes out of it", 1.0, True)
 
 
 def _in_time(what: str, vector: Sequence[Expression], n: Array, kind: str) -> Iterator[Departure]:

@@ -20,6 +20,7 @@ from heuncli.mechanism.model import (
     Assembly,
     Blow,
     Body,
+    Bushing,
     Joint,
     JointLoad,
     Load,
@@ -147,6 +148,10 @@ class Flat:
         if isinstance(load, PairLoad):
             p, q = self.ends(load.a, load.p, load.b, load.q)
             return replace(load, p=p, q=q)
+        if isinstance(load, Bushing):
+            p, q = self.ends(load.a, load.p, load.b, load.q)
+            frames = self.axes(load.a) @ load.frame, self.axes(load.b) @ load.to_frame
+            return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])
         if isinstance(load, JointLoad):
             return self.turn_spring(load) if load.kind == "turn_spring" else load
         if load.body == GROUND:

@@ -20,7 +20,7 @@ LEAST = {
     "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
     "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
     "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
-    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "scale": "the length of one unit of the file: 1 mm", "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
 
@@ -66,7 +66,7 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
             yield from positive((*path, "piece"), body.piece, "mass")
         for i, shape in enumerate(body.shapes or []):
             at = (*path, "shapes", i)
-            yield from positive(at, shape, "mass", "density", "line_density")
+            yield from positive(at, shape, "mass", "density", "line_density", "scale")
             if not isinstance(shape, fs.ConeShape):
                 yield from positive(at, shape, "radius", "inner_radius")
             elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
@@ -119,9 +119,7 @@ def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
 def negative(draft: DraftDocument) -> Iterator[Violation]:
     """Coefficients of springs, dampers and friction, and tolerances of expectations, are not negative."""
     for name, load in draft.document.forces.items():
-        for key in ("stiffness", "length", "damping", "sliding", "coefficient", "torque", "force"):
-            value = getattr(load, key, None)
-            value = getattr(value, "constant", value)
+        for key, value in resisting(load):
             if isinstance(value, float) and value < 0.0:
                 hint = TURN_ROUND.get(key, "it resists with a number above 0; what drives is a torque, force or drive")
                 yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
@@ -132,6 +130,19 @@ def negative(draft: DraftDocument) -> Iterator[Violation]:
             if value is not None and value < 0.0:
                 hint = "it is how far what is found may be off, to either side"
                 yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
+
+
+def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
+    """Every number that tells how much a load resists; of a law of its own what it does is not told by a sign."""
+    keys = ["stiffness", "length", "damping", "sliding", "coefficient", "turning", "turning_damping", "limit"]
+    if isinstance(load, f.FrictionEntry):
+        keys += ["torque", "force"]
+    for key in keys:
+        value = getattr(load, key, None)
+        if isinstance(value, f.ShiftLaws | f.TurnLaws):
+            value = (value.x, value.y, value.z)
+        for part in value if isinstance(value, tuple) else (value,):
+            yield key, getattr(part, "constant", part)
 
 
 @rule("shape-form")
@@ -256,7 +267,7 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
         if body.near is not None and body.near.orientation is not None:
             yield ("bodies", name, "near", "orientation"), body.near.orientation
         for i, shape in enumerate(body.shapes or []):
-            if isinstance(shape, fs.BoxShape) and shape.orientation is not None:
+            if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
 
 

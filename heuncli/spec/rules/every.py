@@ -10,6 +10,7 @@ from heuncli.spec.rules import (
     curves,
     expect,
     joints,
+    latches,
     loads,
     methods,
     naming,
@@ -23,7 +24,7 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, couplings, sections, analysis, methods,
+    naming, references, bodies, products, joints, plane, loads, stops, latches, couplings, sections, analysis, methods,
     conditions, expect, curves, not_yet,
 )  # fmt: skip
 

@@ -59,6 +59,9 @@ def same_point(draft: DraftDocument) -> Iterator[Violation]:
             if owner is not None and start is not None and start == point_in(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
+        if isinstance(load, f.BushingEntry) and load.from_.body == load.to.body:
+            message, hint = f"from and to are both on {load.to.body}", "what stands within one body moves nothing"
+            yield Violation(("forces", name, "to"), message, hint)
         if not isinstance(load, f.ActuatorEntry | f.SpringEntry) or load.from_.body != load.to.body:
             continue
         path, body = ("forces", name, "to"), draft.document.bodies.get(load.to.body)

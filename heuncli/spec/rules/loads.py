@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from heuncli.expressions import units as u
+from heuncli.expressions.discontinuities import first_negative
+from heuncli.expressions.programs import Expression, outside
 from heuncli.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import span_of, type_of
+from heuncli.spec.words import MISSING
 
 ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry
+InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | f.MotorEntry
+LAW = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
 
 
 def loads(draft: DraftDocument) -> Iterator[tuple[str, InJoint, Kind]]:
@@ -35,8 +40,15 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
+        elif isinstance(load, f.MotorEntry):
+            if kind.coordinates != ("angle",):
+                hint = "in a slide a thrust of type torque, by guide.speed"
+                yield Violation((*path, "joint"), f"a motor turns a pin, not a {kind.name}", hint)
         elif isinstance(load, f.TurnSpringEntry):
-            if not kind.takes("turn_spring"):
+            if load.torque is not None and kind.coordinates != ("angle",):
+                message = f"the torque of a turn_spring by a law acts about a pin, not in a {kind.name}"
+                yield Violation((*path, "joint"), message, "its angle is told by a pin alone; else give a stiffness")
+            elif not kind.takes("turn_spring"):
                 message = f"a turn_spring acts about a {named(taking('turn_spring'), 'or')}, not in a {kind.name}"
                 yield Violation((*path, "joint"), message, "between two points use a spring")
         elif isinstance(load, f.DamperEntry):
@@ -44,7 +56,9 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
             if not kind.takes("damper"):
                 hint = "between two points use a spring with damping"
                 yield Violation((*path, "joint"), f"a damper resists nothing in a {kind.name}", hint)
-            if load.coefficient is None and load.sliding is None:
+            if load.torque is not None or load.force is not None:
+                yield from damper_law(name, load, kind)
+            elif load.coefficient is None and load.sliding is None:
                 known = "coefficient (of turning), sliding, or both" if kind in of_both else "coefficient"
                 yield Violation(path, "a damper that resists nothing", f"give {known}", key=True)
             if load.sliding is not None and kind not in of_both:
@@ -69,6 +83,92 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
             elif given[0] not in fitting:
                 message = f"friction of a {kind.name} is a {fitting[0]}"
                 yield Violation((*path, given[0]), message, f"write {fitting[0]}", key=True)
+
+
+def damper_law(name: str, load: f.DamperEntry, kind: Kind) -> Iterator[Violation]:
+    """A damper by a law of the rate: in a pin a torque, in a slide a force."""
+    path = ("forces", name)
+    given = "torque" if load.torque is not None else "force"
+    fitting = LAW[kind.motions[0]] if len(kind.motions) == 1 and kind.coordinates else None
+    if fitting is None:
+        message = f"a damper by a law of its rate acts in a pin or slide, not in a {kind.name}"
+        yield Violation((*path, "joint"), message, "give a coefficient")
+    elif given != fitting:
+        yield Violation((*path, given), f"a damper of a {kind.name} has a {fitting}", f"write {fitting}", key=True)
+
+
+TWO_WAYS = {  # of loads that are told by numbers, or by a law: its key, and the numbers
+    "spring": (("force",), ("stiffness", "length", "damping")),
+    "turn_spring": (("torque",), ("stiffness", "angle", "damping")),
+    "damper": (("torque", "force"), ("coefficient", "sliding")),
+}
+
+
+@rule("load-form")
+def load_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A spring or damper is told by numbers or by a law; a bushing resists something."""
+    for name, load in draft.document.forces.items():
+        path = ("forces", name)
+        laws, numbers = TWO_WAYS.get(load.type, ((), ()))
+        law = [key for key in laws if getattr(load, key) is not None]
+        beside = [key for key in (*laws[1:], *numbers) if getattr(load, key) is not None and key not in law[:1]]
+        if law and beside:
+            message = f"a {load.type} by {law[0]} and by {beside[0]}"
+            yield Violation((*path, beside[0]), message, f"put all of it into {law[0]}, or leave that out", key=True)
+        if isinstance(load, f.BushingEntry) and all(
+            getattr(load, key) is None
+            for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
+        ):
+            yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
+        if isinstance(load, f.MotorEntry) and load.ratio == 0.0:
+            message = "a motor of ratio 0 turns nothing"
+            yield Violation((*path, "ratio"), message, "turns of the motor for one of the joint, as 30")
+
+
+NUMBERS = {"spring": ("stiffness", "length"), "turn_spring": ("stiffness",)}  # that one without a law has to have
+
+
+@rule("missing-key")
+def missing_numbers(draft: DraftDocument) -> Iterator[Violation]:
+    """A spring without a law has its numbers."""
+    for name, load in draft.document.forces.items():
+        laws, _ = TWO_WAYS.get(load.type, ((), ()))
+        for key in NUMBERS.get(load.type, ()):
+            if getattr(load, key) is None and not any(getattr(load, law) is not None for law in laws):
+                hint = f"{MISSING[key]}; or {laws[0]}: a law of its own"
+                yield Violation(("forces", name), f"'{key}' is missing", hint, key=True)
+
+
+@rule("brake")
+def brake(draft: DraftDocument) -> Iterator[Violation]:
+    """The size of friction follows time alone and is never negative."""
+    duration = span_of(draft.document.analysis)
+    for name, load in draft.document.forces.items():
+        for key in FRICTION.values() if isinstance(load, f.FrictionEntry) else ():
+            value = getattr(load, key)
+            if value is None or value.constant is not None:
+                continue
+            path = ("forces", name, key)
+            if value.uses:
+                message = f"the size of friction follows time alone, not {'.'.join(value.uses[0])}"
+                yield Violation(path, message, "what hangs on a coordinate is a torque: -size*tanh(shaft.rate/0.01)")
+            elif (t := first_negative(value, duration)) is not None:
+                message = f"{key} must not be negative, but is {value.value(t):g} at t = {t:.4g} s"
+                yield Violation(path, message, "it resists either way: give its size")
+
+
+@rule("bushing-table")
+def bushing_table(draft: DraftDocument) -> Iterator[Violation]:
+    """The tables of a bushing have a value where it is not deflected."""
+    for name, load in draft.document.forces.items():
+        for key in ("stiffness", "turning") if isinstance(load, f.BushingEntry) else ():
+            laws = getattr(load, key)
+            parts = (laws.x, laws.y, laws.z) if isinstance(laws, f.ShiftLaws | f.TurnLaws) else laws
+            for law in parts if isinstance(parts, tuple) else (parts,):
+                if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
+                    message, hint = outside(law.tables[0])
+                    what = f"{key} has no value where the bushing is not deflected: {message}"
+                    yield Violation(("forces", name, key), what, hint)
 
 
 def by_coefficient(name: str, load: f.FrictionEntry, kind: Kind) -> Iterator[Violation]:
@@ -97,7 +197,7 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
-        elif isinstance(load, f.TurnSpringEntry):
+        elif isinstance(load, f.TurnSpringEntry | f.MotorEntry):
             checks = []
         elif isinstance(load, f.DamperEntry):
             given = [load.coefficient] if load.coefficient is not None else []

@@ -60,6 +60,8 @@ def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
     document = draft.document
     for name in document.stops:
         yield ("stops", name), f"the stop {name}"
+    for name in document.latches:
+        yield ("latches", name), f"the latch {name}"
     for name, joint in document.joints.items():
         if isinstance(joint, RodJoint) and joint.tension_only:
             yield ("joints", name), f"the rope {name}, which may go slack"

@@ -26,6 +26,7 @@ from heuncli.run_places import NO_RUN, marked, names_a_cut, words_of
 from heuncli.spec.names import GROUND, Names
 from heuncli.spec.rules.registry import DraftDocument
 from heuncli.spec.rules.sections import is_run
+from heuncli.spec.semantics import limitable
 
 NUMBER = "NUMBER"
 IN_TWO_WORDS, EVERYWHERE = ".", ".."  # places of keys that no path has
@@ -131,7 +132,7 @@ def keys_in(node: Node, above: list[str], names: Names) -> Collection[str]:
         if above[:1] == ["coordinates"]:
             known = [key for key in known if has_coordinate(above[1:], key, names)]
         if len(above) > 1 and above[-2] == "stops":
-            known = [key for key in known if key in loads_of_stop(names.entries["stops"].get(above[-1]))]
+            known = [key for key in known if key in loads_of_stop(stop_meant(above[-1], names))]
         names.keys[place] = dict.fromkeys(known)
     return names.keys[place]
 
@@ -156,6 +157,17 @@ def has_coordinate(joint: list[str], key: str, names: Names) -> bool:
 
 
 EXERTED = {"moment": "an angle", "force": "a travel or length"}
+
+
+def stop_meant(name: str, names: Names) -> Any:
+    """The stop of a name, or what a latch of that name holds; of a spec, or as plain data that may be in error."""
+    own = names.entries["latches"].get(name, names.entries["stops"].get(name))
+    if name not in names.entries["latches"] or not isinstance(own, dict):
+        return own
+    if "stop" in own:
+        return names.entries["stops"].get(str(own["stop"]))
+    kind = TYPES.get(names.joints.get(str(own.get("joint")), ""))
+    return dict.fromkeys(limitable(kind)) if kind is not None else None
 
 
 def loads_of_stop(stop: Any) -> set[str]:
@@ -237,7 +249,7 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            own = ("forces", "drives", "stops", "couplings", "rolling")
+            own = ("forces", "drives", "stops", "latches", "couplings", "rolling")
             return [*(name for block in own for name in entries[block]), *shared]
         case "BODY":
             return list(entries["bodies"])
@@ -246,7 +258,7 @@ def named(word: str, names: Names) -> list[str]:
         case "SECTION":
             return list(entries["sections"])
         case "STOP":
-            return list(entries["stops"])
+            return [*entries["stops"], *entries["latches"]]
         case "COUPLING":
             return [*entries["couplings"], *entries["rolling"]]
         case "END":
@@ -256,7 +268,7 @@ def named(word: str, names: Names) -> list[str]:
         case "FORCE":
             return list(entries["forces"])
         case "EVENT":
-            return list(entries["events"])
+            return [*entries["events"], *entries["latches"]]
         case "CAUSE":
             return ["gravity", *entries["forces"], "drives", "motion"]
     return [word]

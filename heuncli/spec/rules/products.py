@@ -83,14 +83,18 @@ def extent(shape: fs.ShapeEntry) -> tuple[float, ...]:
             return (*shape.center, shape.radius)
         case fs.PointShape():
             return shape.at
+        case fs.MeshShape():
+            return shape.at or ()
 
 
 def mass_of(shape: fs.ShapeEntry) -> float:
-    """The mass [kg]: as given, or the density times the volume."""
+    """The mass [kg]: as given, or the density times the volume; of a mesh by density 0, its file is read later."""
     if shape.mass is not None:
         return shape.mass
     if isinstance(shape, fs.RodShape):
         return (shape.line_density or 0.0) * math.dist(shape.from_, shape.to)
+    if isinstance(shape, fs.MeshShape):
+        return 0.0
     assert not isinstance(shape, fs.PointShape)
     return (shape.density or 0.0) * volume(shape)
 

@@ -21,7 +21,7 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, load in document.forces.items():
         if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, f.ActuatorEntry | f.SpringEntry):
+        elif isinstance(load, f.ActuatorEntry | f.SpringEntry | f.BushingEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, blow in document.impulses.items():
@@ -145,7 +145,9 @@ def unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
     """Joints exist."""
     joints = draft.names.entries["joints"]
     document = draft.document
-    naming = {"drives": document.drives, "forces": document.forces, "stops": document.stops}
+    naming = {
+        "drives": document.drives, "forces": document.forces, "stops": document.stops, "latches": document.latches,
+    }  # fmt: skip
     for block, entries in naming.items():
         for name, entry in entries.items():  # type: ignore[attr-defined]
             joint = getattr(entry, "joint", None)

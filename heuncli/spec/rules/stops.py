@@ -9,7 +9,7 @@ from heuncli.joint_kinds import TYPES, Kind, named
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
-from heuncli.spec.semantics import Limits, drive_of, limits_of
+from heuncli.spec.semantics import Limits, drive_of, limitable, limits_of
 
 LIMITED = ("angle", "travel", "length")
 
@@ -29,13 +29,8 @@ def limited(draft: DraftDocument) -> Iterator[Limited]:
     for name, stop in draft.document.stops.items():
         kind = TYPES.get(draft.names.joints.get(stop.joint, ""))
         given = limits_of(stop)
-        if kind is not None and given is not None and given[0] in fitting(kind):
+        if kind is not None and given is not None and given[0] in limitable(kind):
             yield Limited(name, stop.joint, kind, *given)
-
-
-def fitting(kind: Kind) -> tuple[str, ...]:
-    """The coordinates of a kind of joint that can be limited."""
-    return ("length",) if kind.keeps_distance else kind.coordinates
 
 
 @rule("stop-form")
@@ -45,7 +40,7 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
         path = ("stops", name)
         quantities = [key for key in LIMITED if getattr(stop, key) is not None]
         kind = TYPES.get(draft.names.joints.get(stop.joint, ""))
-        fit = fitting(kind) if kind is not None else LIMITED
+        fit = limitable(kind) if kind is not None else LIMITED
         if len(quantities) != 1:
             what = " and ".join(quantities) if quantities else "nothing"
             hint = f"a {kind.name} has {' and '.join(fit)}" if kind and fit else f"one of {', '.join(LIMITED)}"
@@ -54,7 +49,7 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
         where = (*path, quantities[0])
         if quantities[0] not in fit:
             assert kind is not None
-            able = named([kind for kind in TYPES.values() if fitting(kind)], "and")
+            able = named([kind for kind in TYPES.values() if limitable(kind)], "and")
             hint = f"a {kind.name} has {' and '.join(fit)}" if fit else f"stops limit {able}"
             yield Violation(where, f"a {kind.name} has no {quantities[0]} to be limited", hint, key=True)
             continue
@@ -69,11 +64,7 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
 @rule("stop-joint")
 def stop_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What a stop limits is neither driven nor given, and no other stop stands on that side of it."""
-    driven: dict[tuple[str, str], str] = {}
-    for name, drive in draft.document.drives.items():
-        prescribed = drive_of(drive, draft.names.joints.get(drive.joint))
-        if prescribed is not None:
-            driven[drive.joint, prescribed.quantity] = name
+    driven = driven_coordinates(draft)
     taken: dict[tuple[str, str, int], str] = {}
     for name, joint, _, quantity, limits in limited(draft):
         path = ("stops", name)
@@ -91,6 +82,16 @@ def stop_joint(draft: DraftDocument) -> Iterator[Violation]:
             if other != name:
                 message = f"{joint}.{quantity} is limited from {('below', 'above')[side]} by {other} already"
                 yield Violation((*path, quantity, side), message, "one stop a side")
+
+
+def driven_coordinates(draft: DraftDocument) -> dict[tuple[str, str], str]:
+    """The drives by what they drive: a joint and its coordinate."""
+    found: dict[tuple[str, str], str] = {}
+    for name, drive in draft.document.drives.items():
+        prescribed = drive_of(drive, draft.names.joints.get(drive.joint))
+        if prescribed is not None:
+            found[drive.joint, prescribed.quantity] = name
+    return found
 
 
 @rule("stop-start")
@@ -136,6 +137,7 @@ def shared_name(draft: DraftDocument) -> Iterator[Violation]:
     beside: dict[str, dict[str, Collection[str]]] = {
         "impulses": {"joints": ropes, "drives": entries["drives"]},
         "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")},
+        "latches": {block: entries[block] for block in ("joints", "forces", "drives", "impulses", "stops", "events")},
     }
     for block, others in beside.items():
         for name in entries[block]:

@@ -26,7 +26,7 @@ from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.momentum import Momenta, momenta
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import JointLoad, PairLoad
+from heuncli.mechanism.model import GROUND, Bushing, JointLoad, PairLoad
 from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
@@ -74,7 +74,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "sections" in wanted:
         shown["sections"] = sections(recovery, SHARES in wanted)
     if "forces" in wanted:
-        shown["forces"] = forces(recovery.loads)
+        shown["forces"] = forces(recovery.loads, states)
     return shown
 
 
@@ -156,7 +156,18 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     return block
 
 
-def forces(loads: Sequence[AppliedLoad]) -> dict[str, ForceBlock]:
+def bushing(load: Bushing, applied: AppliedLoad, states: BodyStates) -> ForceBlock:
+    """Shift and turn of a bushing, and what it exerts on `to`, in its own axes, which stand in `from`."""
+    assert applied.strain is not None
+    shift, turn = applied.strain[:, 0], applied.strain[:, 1]
+    R = np.eye(3) if load.a == GROUND else states.R[:, load.a]
+    force, moment = (own @ load.frame for own in (
+        (applied.action.force[:, None] @ R)[:, 0], (applied.action.moment[:, None] @ R)[:, 0]
+    ))  # fmt: skip
+    return {"shift": shift, "turn": turn, "force": force, "moment": moment}
+
+
+def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
     """Values, lengths, rates and powers of the applied loads."""
     block: dict[str, ForceBlock] = {}
     for applied in loads:
@@ -165,6 +176,8 @@ def forces(loads: Sequence[AppliedLoad]) -> dict[str, ForceBlock]:
             own["length"] = applied.length
         if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
             own["angle"] = applied.length
+        if isinstance(applied.load, Bushing):
+            own |= bushing(applied.load, applied, states)
         if isinstance(applied.load, PairLoad | JointLoad):
             own["rate"] = applied.rate
         own["power"] = applied.power

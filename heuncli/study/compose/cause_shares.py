@@ -16,6 +16,9 @@ def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, stat
         for load in shares.joints:
             if load.joint.name in shown["joints"]:  # of single joints these alone are told
                 shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
+        for coupled in shares.couplings:
+            carried = {coupled.carries: coupled.multipliers[0]}
+            shown["couplings"][coupled.coupling.name]["shares"] = shares.by_name(carried)
     if "foundation" in shown:
         for keys, own in foundation_shares(mechanism, states, shares, about).items():
             at(shown["foundation"], keys)["shares"] = own

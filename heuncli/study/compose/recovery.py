@@ -207,7 +207,8 @@ class Recovery:
 
         Those of the start, and one more for each contact that has closed since.
         """
-        closed = (self.recovered.holding > 0.0) & ~(self.setup.runner.start_holding > 0.0)
+        own = slice(len(self.setup.scene.layout.contacts))
+        closed = (self.recovered.holding[:, own] > 0.0) & ~(self.setup.runner.start_holding[own] > 0.0)
         return np.asarray(self.setup.model["redundant"] + closed.sum(axis=1))
 
     @property

@@ -45,7 +45,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
         block["plane"] = "declared"
     block["reasons"] = reasons(scene, block)
     if layout.contacts:
-        block["reasons"].append(one_sided(layout, runner.start_holding > 0.0))
+        block["reasons"].append(one_sided(layout, runner.start_holding[: len(layout.contacts)] > 0.0))
     if found.at_start > found.generic:
         more = count(found.at_start - found.generic, "condition depends", "conditions depend")
         block["notes"].append(f"the start is a singular pose: {more} on the others just there")

@@ -14,12 +14,13 @@ from typing import Any
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
-from heuncli.spec.models import Condition, End, Spec
+from heuncli.spec.models import Condition, End, Latch, Spec
 from heuncli.study.model.counts_and_lists import some
 from heuncli.study.model.selection import Selection, entries_of
 
 Ends = Mapping[str, Mapping[str, set[str]]]
-STANDING = ("joints", "drives", "forces", "impulses", "stops", "couplings")  # blocks of what stands on bodies
+# blocks of what stands on bodies
+STANDING = ("joints", "drives", "forces", "impulses", "stops", "latches", "couplings")
 # reports that are of some bodies alone, and the blocks of what they tell; the others are of all
 OF_SOME = {"joints": (("joints",), ("stops",), ("couplings",)), "sections": (("sections",),), "forces": (("forces",),),
     "points": (("points",),)}  # fmt: skip
@@ -50,10 +51,12 @@ def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
 
 
 def expressions_in(item: Any) -> Iterator[Expression]:
-    """The values in time of a force or drive, the condition of a blow."""
+    """The values in time of a force or drive, the conditions of a blow or latch."""
     for _, value in named_fields(item):
         if isinstance(value, Condition):
             yield value.value
+        if isinstance(value, Latch):
+            yield from (condition.value for condition in value.conditions)
         for member in value if type(value) is tuple else (value,):
             if isinstance(member, Expression):
                 yield member

@@ -106,12 +106,13 @@ def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     bodies = {name: name for name in spec.bodies}
     points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
     own = {f"drives.{name}": drive for name, drive in spec.drives.items() if name in spec.forces}
-    elements = {**spec.drives, **spec.forces, **spec.stops, **spec.couplings, **own}
+    stops = {**spec.stops, **spec.latches}
+    elements = {**spec.drives, **spec.forces, **stops, **spec.couplings, **own}
     return {
         ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
         ("foundation",): dict.fromkeys(PARTS),
         ("foundation", "supports"): dict(spec.joints), ("foundation", "elements"): elements,
-        ("joints",): dict(spec.joints), ("stops",): dict(spec.stops),
+        ("joints",): dict(spec.joints), ("stops",): dict(stops),
         ("couplings",): dict(spec.couplings), ("sections",): dict(spec.sections),
         ("forces",): dict(spec.forces), ("system_vector", "bodies"): bodies,
     }  # fmt: skip

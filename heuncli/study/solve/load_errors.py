@@ -119,9 +119,10 @@ class LoadErrors:
         self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
-        acting = [*applied, *coupling_actions(coupling_loads(self.setup.scene.layout, several))]
+        coupled = coupling_actions(coupling_loads(self.setup.scene.layout, several))
+        acting = [*applied, *coupled]
         if "reactions" in self.compared:
-            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], terms)
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupled, terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
@@ -170,12 +171,13 @@ class LoadErrors:
         far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], terms: BalanceTerms) -> None:
-        """Reactions, in the axes in which they are told, and drives."""
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+        """Reactions, in the axes in which they are told, those of couplings among them, and drives."""
         F, M = terms.rounding
-        if joints:
-            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
-            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        for some in (joints, coupled):
+            if some:
+                self.take(("reactions", "force"), np.stack([x.force for x in some], axis=1), F, terms.force)
+                self.take(("reactions", "moment"), np.stack([x.moment for x in some], axis=1), M, terms.moment)
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"

@@ -11,7 +11,7 @@ from heuncli.errors import Finding
 from heuncli.kinetostatics.auto_properties import Cutting, joined
 from heuncli.kinetostatics.section_axes import nearest_axis
 from heuncli.results import Results
-from heuncli.shapes.figures import Rectangle
+from heuncli.shapes.figure_kinds import Rectangle
 from heuncli.shapes.forms import Form
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict

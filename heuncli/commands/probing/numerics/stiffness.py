@@ -35,7 +35,7 @@ def eigenvalues(beside: Evaluator, t: float, state: Array, holding: Array) -> Ar
     n = scale.n
     if not n:
         return np.zeros(0, dtype=complex)
-    workspace.hold((holding > 0.0).astype(float).tolist())
+    workspace.hold(layout.closed(holding).tolist())
     at = beside.recovered(np.array([t]), state[None], holding=holding)
     settled = at.states[0]
     A = np.asarray(to_disturbances(scale, settled, tangent(workspace, t, settled) @ to_states(scale, settled)))

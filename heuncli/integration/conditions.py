@@ -1,4 +1,4 @@
-"""Conditions on a motion: whether each is true, and the one that ends a run.
+"""Conditions on a motion: whether each is true.
 
 A condition is a program with branches that the kernel holds within a step and ends steps at, as those of loads
 (kernel/events.py). Between two changes of its branches it stands still, so it is asked once for each: with the branches
@@ -107,21 +107,3 @@ def coordinates_at(scene: Evaluator, times: Array, states: Array) -> list[Coordi
                 put(own, name, freedom.quantity, (q, u, a if math.isfinite(a) else 0.0))
         found.append(own)
     return found
-
-
-class EndingCondition:
-    """The condition that ends a run, asked where a piece begins and where branches turn. Remembers what it was."""
-
-    def __init__(self, layout: Layout) -> None:
-        self.conditions = Conditions(layout)
-        self.layout = layout
-        self.number = next(i for i, condition in enumerate(self.conditions.conditions) if condition.ends)
-        self.was: float | None = None
-
-    def ends(self, t: float, state: Array) -> bool:
-        """Whether it became true at t, by the state of what is integrated (n',); at the start it may be so already."""
-        branches = self.layout.pack.expressions.branches()
-        now = self.conditions.held(t, branches, coordinates_in(self.layout, t, state))[self.number]
-        became = self.was == 0.0 and now == 1.0 and t > 0.0
-        self.was = now
-        return became

@@ -1,0 +1,120 @@
+"""How a load between two bodies is strained: the length of its line, a bushing's shift and turn in its own axes.
+
+d = T' (x_b - x_a)              shift of b's point against a's, in the axes T = R_a F_a, which turn with a
+exp [phi] = T' R_b F_b          rotation vector of b against a, in the same axes; |phi| <= pi
+l = |x_b - x_a|,  l' = n . (v_b - v_a)
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import atan2, sqrt
+
+    from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scaled, sub
+    from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, Load, Scene, Variable
+    from heuncli.kernel.shadow import cython
+
+
+def axes_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
+    """T, axes of a bushing to world."""
+    return load.frame if load.a < 0 else product(scene.bodies[load.a].R, load.frame)
+
+
+def span_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """From a's point to b's, world axes."""
+    return sub(place_of(scene, load.b, load.q), place_of(scene, load.a, load.p))
+
+
+def turn_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """phi."""
+    T: Mat3 = axes_of(scene, load)
+    B: Mat3 = load.to_frame if load.b < 0 else product(scene.bodies[load.b].R, load.to_frame)
+    x: Vec3 = rotate_back(T, Vec3(B.xx, B.yx, B.zx))
+    y: Vec3 = rotate_back(T, Vec3(B.xy, B.yy, B.zy))
+    z: Vec3 = rotate_back(T, Vec3(B.xz, B.yz, B.zz))
+    return rotation_vector(Mat3(x.x, y.x, z.x, x.y, y.y, z.y, x.z, y.z, z.z))
+
+
+def strain_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """d or phi, by the part of a bushing that the load is."""
+    if load.kind == BUSHING_SHIFT:
+        return rotate_back(axes_of(scene, load), span_of(scene, load))
+    return turn_of(scene, load)
+
+
+def rotation_vector(R: Mat3) -> Vec3:
+    """phi of a rotation: by its quaternion, from the largest component of that."""
+    q: Quaternion = quaternion_of(R)
+    v: Vec3 = Vec3(q.x, q.y, q.z)
+    s: cython.double = norm(v)
+    if s < 1e-3:
+        return scaled(2.0 + s * s * (1.0 / 3.0 + 0.15 * s * s), v)
+    return scaled(2.0 * atan2(s, q.w) / s, v)
+
+
+def quaternion_of(R: Mat3) -> Quaternion:
+    """The quaternion of a rotation with w >= 0, without cancellation."""
+    trace: cython.double = R.xx + R.yy + R.zz
+    w: cython.double
+    x: cython.double
+    y: cython.double
+    z: cython.double
+    r: cython.double
+    if trace >= R.xx and trace >= R.yy and trace >= R.zz:
+        r = sqrt(1.0 + trace)
+        w = 0.5 * r
+        x = 0.5 * (R.zy - R.yz) / r
+        y = 0.5 * (R.xz - R.zx) / r
+        z = 0.5 * (R.yx - R.xy) / r
+    elif R.xx >= R.yy and R.xx >= R.zz:
+        r = sqrt(1.0 + R.xx - R.yy - R.zz)
+        w = 0.5 * (R.zy - R.yz) / r
+        x = 0.5 * r
+        y = 0.5 * (R.xy + R.yx) / r
+        z = 0.5 * (R.xz + R.zx) / r
+    elif R.yy >= R.zz:
+        r = sqrt(1.0 + R.yy - R.xx - R.zz)
+        w = 0.5 * (R.xz - R.zx) / r
+        x = 0.5 * (R.xy + R.yx) / r
+        y = 0.5 * r
+        z = 0.5 * (R.yz + R.zy) / r
+    else:
+        r = sqrt(1.0 + R.zz - R.xx - R.yy)
+        w = 0.5 * (R.yx - R.xy) / r
+        x = 0.5 * (R.xz + R.zx) / r
+        y = 0.5 * (R.yz + R.zy) / r
+        z = 0.5 * r
+    return Quaternion(w, x, y, z) if w >= 0.0 else Quaternion(-w, -x, -y, -z)
+
+
+def of_load(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
+    """The variable that is the length of a load's line, the rate of that, or a component of a bushing's strain."""
+    load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+    if variable.part != ALONG_LINE:
+        return component_of(strain_of(scene, load), variable.part)
+    return rate_of_length(scene, load) if variable.is_rate else norm(span_of(scene, load))
+
+
+def component_of(x: Vec3, part: cython.int) -> cython.double:
+    """Along one of the axes."""
+    return x.x if part == 0 else x.y if part == 1 else x.z
+
+
+def rate_of_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """l'; 0 of what has no length."""
+    span: Vec3 = span_of(scene, load)
+    length: cython.double = norm(span)
+    return dot(span, parting_of(scene, load)) / length if length > 0.0 else 0.0
+
+
+def parting_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """Velocity of b's point less that of a's, world axes."""
+    at: Vec3 = place_of(scene, load.b, load.q)
+    from_at: Vec3 = place_of(scene, load.a, load.p)
+    return sub(carried(scene, load.b, at).v, carried(scene, load.a, from_at).v)

@@ -1,0 +1,47 @@
+"""What bushings change by along a direction of the state: bushings.py, differentiated line by line."""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, scaled, sub
+    from heuncli.kernel.bushings import axes_of, moment_along, rate_of_vector, times, varying
+    from heuncli.kernel.loads import given_vector
+    from heuncli.kernel.scene import BUSHING_SHIFT, BushingTangent, Load, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.tangent_motion import swung
+    from heuncli.kernel.tangent_strains import strain_along
+
+
+def bushing_along(
+    scene: cython.pointer[Scene], load: cython.pointer[Load], slope: Vec3, motion: Vec3, d_motion: Vec3
+) -> BushingTangent:
+    """Of force or moment on b, world axes, and of the power of what has no potential.
+
+    slope: of its given components; motion: of b as seen from a, world axes, and what that changes by.
+    """
+    T: Mat3 = axes_of(scene, load)
+    given: Vec3 = given_vector(scene, load)
+    free: Vec3 = varying(load, given)
+    rate: Vec3 = rotate_back(T, motion)
+    d_rate: Vec3 = rotate_back(T, sub(d_motion, swung(scene, load.a, motion)))
+    drag: Vec3 = times(load.resistances, d_rate)
+    loss: cython.double = -2.0 * dot(times(load.resistances, rate), d_rate)
+    x: Vec3 = load.strain
+    dx: Vec3 = strain_along(scene, load, x)
+    change: Vec3 = sub(slope, times(load.stiffnesses, dx))
+    acts: Vec3
+    if load.kind == BUSHING_SHIFT:
+        loss += dot(slope, rate) + dot(free, d_rate)
+        acts = load.force
+    else:
+        change = moment_along(x, sub(given, times(load.stiffnesses, x)), dx, change)
+        loss += dot(slope, rate_of_vector(x, rate))
+        loss += dot(free, moment_along(scaled(-1.0, x), rate, scaled(-1.0, dx), d_rate))
+        acts = load.moment
+    turned: Vec3 = swung(scene, load.a, acts)
+    return BushingTangent(add(rotate(T, sub(change, drag)), turned), loss)

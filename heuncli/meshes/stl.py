@@ -1,0 +1,68 @@
+"""STL: triangles without topology; binary, each corner three float32, or as text.
+
+    80 bytes, count (uint32), count times: normal, three corners (12 float32), 2 bytes         little-endian
+    solid NAME  facet normal x y z  outer loop  vertex x y z (three times)  endloop  endfacet ...  endsolid NAME
+A text begins with `solid`, but so do some binary files: what has the length of a binary file is one. Normals are not
+read: the order of the corners says what is outside.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from heuncli.errors import Finding
+from heuncli.meshes.model import Soup
+from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused
+from heuncli.results import Array
+
+HEAD, FACET = 84, 50  # bytes
+RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+SOLID = re.compile(rb"^[ \t]*(?:end)?solid\b[^\r\n]*", re.MULTILINE | re.IGNORECASE)
+# the tokens of a facet; None: a number
+FORM = (
+    b"facet", b"normal", None, None, None, b"outer", b"loop", *((b"vertex", None, None, None) * 3),
+    b"endloop", b"endfacet",
+)  # fmt: skip
+
+
+def read_stl(content: bytes) -> Soup:
+    """The triangles of an STL file. Raises Finding."""
+    count = int.from_bytes(content[80:HEAD], "little") if len(content) >= HEAD else -1
+    if len(content) == HEAD + FACET * count:
+        places = np.frombuffer(content, RECORD, count, HEAD)["corners"].astype(np.float64)
+        return _soup(places)
+    if content.lstrip()[:5].lower() == b"solid":
+        return _soup(_as_text(content))
+    if count < 0:
+        raise refused("an STL file has a head of 84 bytes", SAVE_AGAIN)
+    missing = HEAD + FACET * count - len(content)
+    what = f"it breaks off: {missing} bytes are missing" if missing > 0 else f"{-missing} bytes more than these"
+    raise refused(f"its head announces {count} triangles, but {what}", SAVE_AGAIN)
+
+
+def _soup(places: Array) -> Soup:
+    return Soup(places.reshape(-1, 3), np.arange(3 * len(places)).reshape(-1, 3))
+
+
+def _as_text(content: bytes) -> Array:
+    """The corners (m, 3, 3) of a file that is text; of several solids all."""
+    words = SOLID.sub(b" ", content).split()
+    whole = len(words) // len(FORM)
+    for k, word in enumerate(FORM):
+        if word is None:
+            continue
+        found = words[k :: len(FORM)]
+        if any(each != word and each.lower() != word for each in set(found)):
+            wrong = next(i for i, each in enumerate(found) if each.lower() != word)
+            raise _no_facet(wrong + 1, word)
+    if len(words) % len(FORM):
+        raise refused(f"it breaks off in triangle {whole + 1}", SAVE_AGAIN)
+    numbers = [k for k, word in enumerate(FORM) if word is None][3:]
+    return np.stack([floats(words[k :: len(FORM)], "triangle") for k in numbers], axis=-1).reshape(-1, 3, 3)
+
+
+def _no_facet(number: int, word: bytes) -> Finding:
+    hint = "facet normal x y z, outer loop, vertex x y z three times, endloop, endfacet; or save it as binary STL"
+    return refused(f"triangle {number} is not written as in STL: '{word.decode()}' is missing", hint)
