@@ -186,7 +186,10 @@ ROWS: tuple[Quantity, ...] = (
         scalar("tension", "N")),
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
-    *at("couplings.COUPLING", "the load that the coupling carries", scalar("force", "N"), scalar("moment", "N·m")),
+    *at("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its flank, "
+        "above zero where it presses", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
+    *at("couplings.COUPLING", "of a cam, the angle between that normal and the way of the follower",
+        scalar("pressure_angle", "rad")),
     *at("couplings.COUPLING", "of a wheel: what the plane presses it with, and what keeps it from slipping, in all, "
         "along its track and along its axle's shadow on the plane, ON the wheel",
         scalar("normal", "N"), scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
@@ -195,7 +198,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),
-    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m")),
+    *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",
         vector("normal", "1"), vector("first_axis", "1")),

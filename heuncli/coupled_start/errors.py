@@ -32,9 +32,7 @@ def too_many(layout: Layout, row: int, bodies: int) -> SolveError:
     """More bodies than are fitted at once hang together by the coupling of a row."""
     name, about, _ = _owner(layout, np.array([row]), np.ones(1))
     message = f"{name} ties {bodies:,} bodies together whose start does not fit yet: more than are fitted at once"
-    return SolveError(
-        Problem("too-many-together", message, hint="give more of its velocities", about=about)
-    )
+    return SolveError(Problem("too-many-together", message, hint="give more of its velocities", about=about))
 
 
 def _owner(layout: Layout, rows: Indices, left: Array) -> tuple[str, str, str]:

@@ -7,6 +7,8 @@ MODULES = (
     "jets",
     "intervals",
     "enclosure",
+    "paths",
+    "cams",
     "plane",
     "plane_rows",
     "strains",

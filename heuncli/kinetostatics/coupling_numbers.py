@@ -51,8 +51,8 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
 
 def carried(loads: CouplingLoads) -> list[CoupledNumber]:
     """The multiplier of its first condition: the force or the moment for which the coupling is there."""
-    is_moment = loads.carries == "moment"
-    return [CoupledNumber("moment" if is_moment else "force", loads.multipliers[0], (0,), is_moment, 1.0)]
+    name = loads.carries
+    return [CoupledNumber(name, loads.carried, (0,), name == "moment", float(name in ("force", "moment")))]
 
 
 def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:

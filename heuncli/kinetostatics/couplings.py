@@ -67,8 +67,19 @@ class CouplingLoads:
 
     @property
     def carries(self) -> str:
-        """What its load is called: a moment, where it loads by couples alone."""
+        """What its load is called: a moment, where it loads by couples alone; of a cam the force of contact."""
+        if self.coupling.given.type == "cam":
+            return "contact"
         return "moment" if self.coupling.rows[0].is_couple else "force"
+
+    @property
+    def carried(self) -> Array:
+        """That load, (..., n_t): the multiplier of the first row; of a cam above zero where it presses."""
+        if self.carries != "contact":
+            return self.multipliers[0]
+        (load,) = self.parts
+        size: Array = load.part.factor * np.sqrt(np.sum(load.f * load.f, axis=-1))
+        return size * self.multipliers[0]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""

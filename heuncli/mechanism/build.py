@@ -80,9 +80,9 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import Numbered, couplings_of  # few scenes have them
+        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
 
-        couplings = couplings_of(spec, Numbered(made, {name: k for name, (k, _) in joints.items()}, index, planar))
+        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -139,7 +139,7 @@ def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
 
 def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
-    axis = unit(j.axis)
+    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
         a=a, p=np.array(j.p), b=b, q=np.array(j.q),
@@ -147,7 +147,7 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
-        p_name=j.p_name, q_name=j.q_name,
+        p_name=j.p_name, q_name=j.q_name, path=j.path,
     )  # fmt: skip
 
 

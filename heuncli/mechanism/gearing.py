@@ -92,7 +92,14 @@ def gear_row(
 
 
 def mesh_parts(
-    a: int, b: int, carrier: int, P: Array, f: Array, m: Array, counted: Sequence[Coordinate], apart: Array | None = None
+    a: int,
+    b: int,
+    carrier: int,
+    P: Array,
+    f: Array,
+    m: Array,
+    counted: Sequence[Coordinate],
+    apart: Array | None = None,
 ) -> tuple[CouplingPart, ...]:
     """A load fixed in the carrier, and its coordinates, two to a part."""
     parts = [
@@ -143,7 +150,9 @@ def member(joints: Sequence[Joint], bodies: Sequence[Body], k: int, carrier: int
     """What a joint on the carrier lets turn, or slide. Raises Finding."""
     joint = joints[k]
     if joint.kind not in ("pin", "slide", "cylinder"):
-        raise Finding("gear-joints", f"joint {joint.name} is a {joint.kind}", "gears turn in pins or cylinders, racks slide")
+        raise Finding(
+            "gear-joints", f"joint {joint.name} is a {joint.kind}", "gears turn in pins or cylinders, racks slide"
+        )
     body, sign = (joint.b, 1.0) if joint.a == carrier else (joint.a, -1.0)
     point, axis = line_on(joint, bodies, carrier)
     turns = joint.kind != "slide"

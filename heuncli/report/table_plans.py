@@ -150,7 +150,7 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("normal", "friction", "along", "aside", "grip", "force", "moment"),
+    ("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Literal
 
+from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
@@ -93,4 +94,24 @@ class Differential(NamedTuple):
     type: Literal["differential"] = "differential"
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Wheel  # a union of the classes here
+class Cam(NamedTuple):
+    """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
+
+    at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
+    normal. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
+    `both`, the follower is guided on both sides.
+    """
+
+    shaft: str
+    follower: str
+    lift: TableFunction
+    at: tuple[float, float, float]
+    contact: Literal["roller", "flat", "point"]
+    radius: float = 0.0
+    normal: tuple[float, float, float] | None = None
+    both: bool = False
+    restitution: float | None = None
+    type: Literal["cam"] = "cam"
+
+
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here

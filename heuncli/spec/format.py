@@ -51,6 +51,7 @@ from heuncli.spec.fields import (
     OwnDamperTorque,
     OwnSpringForce,
     OwnTurnTorque,
+    PathPart,
     PointOrName,
     Position,
     Pressure,
@@ -241,6 +242,14 @@ class PlaneJoint(AnyJoint):
     normal: Direction
 
 
+class CurveJoint(Bearing):
+    type: Literal["curve"]
+    x: PathPart = 0.0
+    y: PathPart = 0.0
+    z: PathPart = 0.0
+    initial: Sliding | None = None
+
+
 class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
@@ -249,7 +258,16 @@ class RodJoint(AnyJoint):
 
 
 JointEntry = (
-    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | WeldJoint | LineJoint | PlaneJoint | RodJoint
+    BallJoint
+    | PinJoint
+    | SlideJoint
+    | CylinderJoint
+    | UniversalJoint
+    | WeldJoint
+    | LineJoint
+    | PlaneJoint
+    | RodJoint
+    | CurveJoint
 )
 JOINTS: dict[str, type[JointEntry]] = {
     "ball": BallJoint,
@@ -261,6 +279,7 @@ JOINTS: dict[str, type[JointEntry]] = {
     "line": LineJoint,
     "plane": PlaneJoint,
     "rod": RodJoint,
+    "curve": CurveJoint,
 }
 
 

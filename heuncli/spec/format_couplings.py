@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
-from heuncli.spec.entries import Entry
-from heuncli.spec.fields import AnEnd, Angle, Anything, Force, Length, Number, Switch
+from heuncli.spec.entries import Entry, key
+from heuncli.spec.fields import AnEnd, Angle, Anything, Direction, Force, Length, Lift, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -13,7 +14,8 @@ class RatioEntry(Entry):
 
     type: Literal["ratio"]
     of: list[str]
-    factors: list[Number]
+    factors: list[Anything]
+    is_: Anything | None = key("is", None)
 
 
 class GearEntry(Entry):
@@ -55,9 +57,22 @@ class DifferentialEntry(Entry):
     ratio: Number = -1.0
 
 
-CouplingEntry = Annotated[
-    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry, Field(discriminator="type")
-]
-COUPLINGS: dict[str, type[Entry]] = {
+class CamEntry(Entry):
+    """A disc that moves a follower."""
+
+    type: Literal["cam"]
+    of: list[str]
+    lift: Lift
+    at: AnEnd
+    contact: Literal["roller", "flat", "point"]
+    radius: Length | None = None
+    normal: Direction | None = None
+    two_sided: Switch = False
+    restitution: Number | None = None
+
+
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry
+COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
+    "cam": CamEntry,
 }  # fmt: skip

@@ -21,6 +21,7 @@ from heuncli.records import record
 from heuncli.spec.couplings import Coupling
 
 if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
     from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
@@ -32,6 +33,7 @@ Ref = TypeVar("Ref")  # what a body or joint is called by: its name, or its numb
 V = TypeVar("V")  # a vector
 M = TypeVar("M")  # a matrix
 ZERO: Vec = (0.0, 0.0, 0.0)
+X: Vec = (1.0, 0.0, 0.0)
 Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
@@ -152,7 +154,8 @@ class Joint(Generic[Ref, V]):
     length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
     drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
-    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names.
+    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
+    of a curve, from the point p on, a's axes.
     """
 
     name: str
@@ -176,6 +179,7 @@ class Joint(Generic[Ref, V]):
     bearing: float | None = None
     p_name: str | None = None
     q_name: str | None = None
+    path: Path | None = None
 
 
 class PointForce(NamedTuple):

@@ -37,6 +37,7 @@ from heuncli.spec.semantics import (
 from heuncli.spec.turns import IDENTITY
 
 if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
     from heuncli.meshes.model import TriangleMesh
 
 DEFAULT_TOLERANCE = 1e-9
@@ -218,7 +219,14 @@ class Resolver:
             bearing=area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
+            path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
         )
+
+    def path(self, joint: f.CurveJoint) -> Path:
+        """What the point of a curve runs along."""
+        from heuncli.expressions.paths import path_of  # with NumPy, which a spec without one has no need of
+
+        return path_of((joint.x, joint.y, joint.z))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)

@@ -36,10 +36,9 @@ def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
-    """A linear relation of the first coordinates of joints."""
-    kinds = [TYPES[by.document.joints[joint].type] for joint in entry.of]
-    rows = zip(entry.of, kinds, entry.factors, strict=True)
-    return c.Ratio(tuple(c.Term(joint, kind.coordinates[0], factor) for joint, kind, factor in rows))
+    """A linear relation of coordinates."""
+    rows = zip(entry.of, entry.factors, strict=True)
+    return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
 
 
 def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
@@ -67,4 +66,48 @@ def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
     return ResultCondition(name, f"{of} below 0", ends, of, 0.0, False, why)
 
 
-MEANINGS = {"ratio": ratio}
+def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:
+    """Two gears."""
+    teeth = None if entry.teeth is None else (entry.teeth[0], entry.teeth[1])
+    at = None if entry.at is None else by.end(entry.at)
+    return c.Gear(
+        tuple(term(by, word) for word in entry.of), entry.ratio, teeth, entry.internal, at,
+        entry.pressure_angle, entry.helix,
+    )  # fmt: skip
+
+
+def screw(by: Following, name: str, entry: f.ScrewEntry) -> c.Screw:
+    """A thread: of a cylinder its two coordinates."""
+    if len(entry.of) == 1:
+        joint = entry.of[0]
+        return c.Screw((c.Term(joint, "angle", 1.0), c.Term(joint, "travel", 1.0)), entry.lead)
+    return c.Screw(tuple(term(by, word) for word in entry.of), entry.lead)
+
+
+def belt(by: Following, name: str, entry: f.BeltEntry) -> c.Belt:
+    """A belt over two pulleys."""
+    terms = tuple(term(by, word) for word in entry.of)
+    return c.Belt(terms, (entry.radii[0], entry.radii[1]), entry.crossed, entry.pretension)
+
+
+def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Differential:
+    """Two shafts and their carrier."""
+    return c.Differential(tuple(term(by, word) for word in entry.of), entry.ratio)
+
+
+def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
+    """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
+    joint, _, quantity = word.partition(".")
+    return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
+
+
+def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
+    """A disc and its follower."""
+    shaft, follower = entry.of
+    return c.Cam(
+        shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        entry.two_sided, entry.restitution,
+    )  # fmt: skip
+
+
+MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}

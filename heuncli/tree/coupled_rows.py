@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.mechanism.model import Assembly
+from heuncli.records import replace
 from heuncli.tree.rows import ZERO, ClosureRow, Vector
 from heuncli.tree.starts import pose
 
@@ -15,6 +16,7 @@ KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
     "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE,
     "ball_touches": kernel.BALL_TOUCHES, "ball_rolls": kernel.BALL_ROLLS,
+    "cam": kernel.CAM,
 }  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree
@@ -31,7 +33,7 @@ def part_row(
         kind=KINDS[part.kind],
         a=in_tree(part.a),
         b=in_tree(part.b),
-        p=relative(part.c if part.kind == "mesh" else part.a, part.p),
+        p=relative(part.c if part.kind in ("mesh", "cam") else part.a, part.p),
         q=relative(part.b, part.q),
         weight=1.0,
         freedom=freedom,
@@ -44,6 +46,18 @@ def part_row(
         freedom_b=freedom_b,
         ratio_b=ratio_b,
     )
+
+
+def with_lift(row: ClosureRow, part: CouplingPart, first: int, relative: Relative) -> ClosureRow:
+    """The row of a cam with its lift, the first piece of which stands there; of any other part as it is."""
+    cam = part.cam
+    if cam is None:
+        return row
+    return replace(
+        row, lift=first, pieces=len(cam.lift.coefficients), period=cam.lift.period, swings=int(cam.swings),
+        faced=int(cam.face is not None), radius=cam.radius, pivot=relative(part.c, cam.pivot),
+        h=ZERO if cam.face is None else cam.face,
+    )  # fmt: skip
 
 
 def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from heuncli.spec.rules import (
     analysis,
     bodies,
+    cams,
     conditions,
     couplings,
     curves,
@@ -24,8 +25,8 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, latches, couplings, sections, analysis, methods,
-    conditions, expect, curves, not_yet,
+    naming, references, bodies, products, joints, plane, loads, stops, latches, couplings, cams, sections, analysis,
+    methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

@@ -48,6 +48,12 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["stops"] = stops(recovery.asked_joints)
         names = [body.name for body in mechanism.bodies]
         shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
+        for own in recovery.couplings:
+            if own.coupling.given.type == "cam":
+                from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+
+                angle = pressure_angle(own, mechanism.joints, states)
+                shown["couplings"][own.coupling.name]["pressure_angle"] = angle
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
