@@ -60,10 +60,10 @@ def wheel_contact(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     n: Moving = direction_moving(scene, row.a, row.e)
     C: Moving = centre_moving(scene, row)
     if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
-        return WheelContact(along_moving(C, -row.length, n), direction_moving(scene, row.a, row.g))
+        return WheelContact(along_moving(C, -row.radius, n), direction_moving(scene, row.a, row.g))
     k: Moving = direction_moving(scene, row.b, row.g)
     t: Moving = unit_moving(cross_moving(k, n))
-    c: Moving = along_moving(C, -row.length, cross_moving(t, k))
+    c: Moving = along_moving(C, -row.radius, cross_moving(t, k))
     if row.kind == ROLLS:
         return WheelContact(c, t)
     if row.kind == ROLLS_ASIDE:

@@ -71,10 +71,10 @@ def wheel_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> W
     centre: PointMotion = point_along(scene, row.b, row.q)
     C: MovingTangent = MovingTangent(centre_moving(scene, row), Moving(centre.x, centre.v))
     if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
-        return WheelTangent(sum_along(C, -row.length, n), direction_along(scene, row.a, row.g))
+        return WheelTangent(sum_along(C, -row.radius, n), direction_along(scene, row.a, row.g))
     k: MovingTangent = direction_along(scene, row.b, row.g)
     t: MovingTangent = unit_along(cross_along(k, n))
-    c: MovingTangent = sum_along(C, -row.length, cross_along(t, k))
+    c: MovingTangent = sum_along(C, -row.radius, cross_along(t, k))
     if row.kind == ROLLS:
         return WheelTangent(c, t)
     if row.kind == ROLLS_ASIDE:

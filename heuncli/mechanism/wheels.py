@@ -34,11 +34,16 @@ class Ends(TypedDict):
 def disc_rows(ends: Ends, axle: Array, radius: float, ways: Mapping[str, bool]) -> tuple[CoupledRow, ...]:
     """The rows of a thin disc; ways: in which it does not slip."""
     kinds: list[CouplingKind] = ["touches", *(kind for way, kind in SPEEDS.items() if ways[way])]
-    return tuple(CoupledRow((CouplingPart(kind, g=axle, radius=radius, **ends),), 0.0) for kind in kinds)
+    return tuple(row_of(CouplingPart(kind, g=axle, radius=radius, **ends)) for kind in kinds)
 
 
 def ball_rows(ends: Ends, radius: float) -> tuple[CoupledRow, ...]:
     """The rows of a sphere, whose lowest point touches the plane and stands still on it."""
     touches = CouplingPart("ball_touches", g=ends["e"], radius=radius, **ends)
     rolls = (CouplingPart("ball_rolls", g=g, radius=radius, **ends) for g in perpendicular(np.asarray(ends["e"])))
-    return tuple(CoupledRow((part,), 0.0) for part in (touches, *rolls))
+    return tuple(row_of(part) for part in (touches, *rolls))
+
+
+def row_of(part: CouplingPart) -> CoupledRow:
+    """The row of a part alone: at the start one that holds a speed asks for rates, and for no pose."""
+    return CoupledRow((part,), None if part.holds_speed else 0.0)
