@@ -12,12 +12,15 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.kernel.choose import scene as kernel
 from heuncli.records import record
 from heuncli.response import motions, settled, workspace_of
-from heuncli.results import Array
+from heuncli.results import Array, Indices, Mask
 from heuncli.shapes.rotations import cross, cross_rows
 from heuncli.tree.layout import Layout, places_of_rates
 from heuncli.tree.tables import Table
+
+SPEEDS = (kernel.ROLLS, kernel.ROLLS_ASIDE, kernel.BALL_ROLLS)  # kinds of parts that hold a speed and no pose
 
 
 @record
@@ -41,6 +44,18 @@ class Linearised:
     omega: Array  # (n_b, 3)
     velocities: Array  # (n_b, 3) of the centres
     mass: Array  # (n, n) mass matrix of the tree, without what is lent
+    posed: Posed | None = None  # where rows hold speeds
+
+
+@record
+class Posed:
+    """What the rows that hold poses alone admit, where others hold speeds: all poses are reached, not all at once.
+
+    tangent (n, p) orthonormal, by the layout's weights, p >= f; drift (n, p): the change of rates that each needs.
+    """
+
+    tangent: Array
+    drift: Array
 
 
 def linearised(layout: Layout, t: float, state: Array, holding: Array | None = None) -> Linearised:
@@ -69,6 +84,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
         by_rate=found.tangent[np.ix_(rates, rates)],
         tangent=tangent,
         drift=drift,
+        posed=posed(layout, at.chosen, found.rates[:, rates], found.rates @ shown, weights),
         across=across / layout.tables["closures"]["weight"][at.chosen],
         **motions_of_bodies(layout, poses, found.omega[..., rates], found.v[..., rates]),
     )
@@ -104,6 +120,26 @@ def admitted(J: Array, turned: Array, weights: Array) -> tuple[Array, Array, Arr
     by_rows = U.T @ (turned @ tangent)
     across = (V[:m].T / s @ U.T) / weights[:, None]
     return tangent, -(V[:m].T @ (by_rows / s[:, None])) / weights[:, None], across
+
+
+def posed(layout: Layout, chosen: Indices, J: Array, turned: Array, weights: Array) -> Posed | None:
+    """The displacements of rows that hold poses, where some of the independent ones (m,) hold speeds."""
+    speeds = holds_speed(layout)[chosen]
+    if not speeds.any():
+        return None
+    tangent, _, _ = admitted(J[~speeds], turned[~speeds], weights)
+    tangent = tangent[:, : len(weights) - int(np.sum(~speeds))]
+    needed = np.linalg.lstsq(J / weights, -turned @ tangent, rcond=None)[0]
+    return Posed(tangent, needed / weights[:, None])
+
+
+def holds_speed(layout: Layout) -> Mask:
+    """Which closure rows hold a speed and no pose: of wheels, (rows,)."""
+    closures, parts = layout.tables["closures"], layout.tables["parts"]
+    sums = closures["kind"] == kernel.SUM
+    found = np.zeros(len(closures), dtype=bool)
+    found[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
+    return found
 
 
 def motions_of_bodies(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:

@@ -14,6 +14,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
+from heuncli.linearisation.linearise import holds_speed
 from heuncli.linearisation.modes import SceneModes, most, shape_of
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.shapes import coordinates
@@ -60,6 +61,13 @@ def looked_for(spec: Spec) -> FoundModes:
     """All small motions of a spec's scene. Raises SolveError where there is no state to oscillate about."""
     setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_no_time(setup)
+    if holds_speed(setup.scene.layout).any() and setup.spec.analysis.type != "rest":
+        from heuncli.linearisation.rolling import rolling_modes, rolls_on  # few scenes have wheels
+
+        here = looked_at(setup)
+        if rolls_on(here):
+            require_slopes(here)
+            return FoundModes(here, "state", rolling_modes(here))
     here, at, beside = state_of(setup)
     require_slopes(here)
     return FoundModes(here, at, as_known(oscillations(here.system, here.loose), here, beside))
