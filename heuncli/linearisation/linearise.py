@@ -12,15 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kernel.choose import scene as kernel
 from heuncli.records import record
 from heuncli.response import motions, settled, workspace_of
-from heuncli.results import Array, Indices, Mask
+from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import cross, cross_rows
+from heuncli.tree.held_speeds import holds_speed
 from heuncli.tree.layout import Layout, places_of_rates
 from heuncli.tree.tables import Table
-
-SPEEDS = (kernel.ROLLS, kernel.ROLLS_ASIDE, kernel.BALL_ROLLS)  # kinds of parts that hold a speed and no pose
 
 
 @record
@@ -131,15 +129,6 @@ def posed(layout: Layout, chosen: Indices, J: Array, turned: Array, weights: Arr
     tangent = tangent[:, : len(weights) - int(np.sum(~speeds))]
     needed = np.linalg.lstsq(J / weights, -turned @ tangent, rcond=None)[0]
     return Posed(tangent, needed / weights[:, None])
-
-
-def holds_speed(layout: Layout) -> Mask:
-    """Which closure rows hold a speed and no pose: of wheels, (rows,)."""
-    closures, parts = layout.tables["closures"], layout.tables["parts"]
-    sums = closures["kind"] == kernel.SUM
-    found = np.zeros(len(closures), dtype=bool)
-    found[sums] = np.isin(parts["kind"][closures["part"][sums]], SPEEDS)
-    return found
 
 
 def motions_of_bodies(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:

@@ -14,7 +14,6 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
-from heuncli.linearisation.linearise import holds_speed
 from heuncli.linearisation.modes import SceneModes, most, shape_of
 from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.shapes import coordinates
@@ -29,6 +28,7 @@ from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import Setup, set_up
+from heuncli.tree.held_speeds import holds_speed
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
 NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
