@@ -82,7 +82,7 @@ def require_poses(setup: Setup) -> None:
     if layout.mechanism.planar or not holds_speed(layout).any():
         return
     message = "what rolls has more poses than speeds: no coordinates have its speeds as their rates"
-    hint = "heun run tells its motion and loads, heun modes its small motions; in a planar scene wheels roll along lines"
+    hint = "heun run tells its motion and loads, heun modes its small motions; in the plane wheels roll along lines"
     raise SolveError(Problem("no-coordinate", message, hint=hint))
 
 
