@@ -117,3 +117,15 @@ def lines(read: Model, state: State) -> list[tuple[str, Array, Array, float]]:
                     line[at + 3 : at + 6] += sign * cross(lever_arm, e)
             found.append((w.name, e, line, float(de @ s + e @ bias)))
     return found
+
+
+def loads(read: Model, state: State, multipliers: Array, names: list[str]) -> dict[str, Array]:
+    """The force of each plane ON its wheel, of the multipliers of all rows and whose they are."""
+    found: dict[str, Array] = {}
+    own = {w.name for w in wheels(read.scene)}
+    directed = iter(lines(read, state))
+    for name, multiplier in zip(names, multipliers, strict=True):
+        if name in own:
+            _, e, _, _ = next(directed)
+            found[name] = found.get(name, np.zeros(3)) + multiplier * e
+    return found
