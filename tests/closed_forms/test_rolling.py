@@ -1,4 +1,4 @@
-"""Wheels and balls that roll, against closed forms: slopes, Euler's steady circles, the turntable, the sleigh, carts."""
+"""Wheels and balls that roll, against closed forms: slopes, steady circles, the turntable, the sleigh, carts."""
 
 from __future__ import annotations
 
@@ -197,7 +197,8 @@ heun: 1
 gravity: {other.get("gravity", "[0, -9.81, 0]")}
 ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
-  frame: {{mass: 10, center: [0, 0.5, 0], inertia: 1, points: {{r: [-0.5, 0, 0], f: [0.5, 0, 0]}}, position: [0, 0.1, 0]}}
+  frame: {{mass: 10, center: [0, 0.5, 0], inertia: 1, position: [0, 0.1, 0], {other.get("start", "")}
+          points: {{r: [-0.5, 0, 0], f: [0.5, 0, 0]}}}}
   rear: {wheel.format(-0.5)}
   front: {wheel.format(0.5)}
 joints:
