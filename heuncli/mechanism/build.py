@@ -153,7 +153,7 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
 
 def coupled(spec: m.Spec) -> set[str]:
     """The joints whose coordinates are coupled."""
-    return {term.joint for coupling in spec.couplings.values() for term in getattr(coupling, "terms", ())}
+    return {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(

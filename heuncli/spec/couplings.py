@@ -22,12 +22,22 @@ class Term(NamedTuple):
     factor: float
 
 
+def joints_of(terms: tuple[Term, ...]) -> tuple[str, ...]:
+    """Those whose coordinates are terms."""
+    return tuple(term.joint for term in terms)
+
+
 class Ratio(NamedTuple):
     """A linear relation: the sum of the terms stays what it is at the start, or is `is_`."""
 
     terms: tuple[Term, ...]
     is_: float | None = None
     type: Literal["ratio"] = "ratio"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
 
 
 class Wheel(NamedTuple):
@@ -48,6 +58,11 @@ class Wheel(NamedTuple):
     held: bool = False
     type: Literal["wheel"] = "wheel"
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: a wheel counts by no coordinate."""
+        return ()
+
 
 class Gear(NamedTuple):
     """Two gears, or a gear and a rack, by their joints: those of the terms, whose factors are 1.
@@ -64,6 +79,11 @@ class Gear(NamedTuple):
     helix: float = 0.0
     type: Literal["gear"] = "gear"
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
 
 class Screw(NamedTuple):
     """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
@@ -75,6 +95,11 @@ class Screw(NamedTuple):
     lead: float
     type: Literal["screw"] = "screw"
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
 
 class Belt(NamedTuple):
     """A belt over two pulleys of some radii [m]; pretension [N]: of each strand at rest without load; crossed."""
@@ -85,6 +110,11 @@ class Belt(NamedTuple):
     pretension: float = 0.0
     type: Literal["belt"] = "belt"
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
 
 class Differential(NamedTuple):
     """Two shafts and their carrier, the terms: first - carrier = ratio (second - carrier)."""
@@ -92,6 +122,11 @@ class Differential(NamedTuple):
     terms: tuple[Term, ...]
     ratio: float = -1.0
     type: Literal["differential"] = "differential"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
 
 
 class Cam(NamedTuple):
@@ -112,6 +147,11 @@ class Cam(NamedTuple):
     both: bool = False
     restitution: float | None = None
     type: Literal["cam"] = "cam"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return self.shaft, self.follower
 
 
 Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here
