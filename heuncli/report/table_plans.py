@@ -153,7 +153,10 @@ COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment", "contact", "pressure_angle", "radial", "axial", "normal", "torque", "tight", "slack"),
+    (
+        "normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle",
+        "radial", "axial", "torque", "tight", "slack",
+    ),  # fmt: skip
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

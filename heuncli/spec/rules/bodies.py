@@ -105,6 +105,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
         if section.properties is not None:
             yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+    for name, wheel in draft.document.rolling.items():
+        yield from positive(("rolling", name), wheel, "radius")
     yield from positive(("analysis",), draft.document.analysis, "duration", "step")
 
 
