@@ -33,8 +33,10 @@ if not cython.compiled:
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
+    from heuncli.kernel.rolling import rolling_row
     from heuncli.kernel.scene import (
-        ARC, CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, Body, Carried, Closure, Counter, Scene,
+        ARC, CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, WOUND, Body, Carried, Closure, Counter,
+        Scene,
     )  # fmt: skip
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
@@ -99,8 +101,10 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         strand_part(scene, row)
     elif row.kind == ARC:
         arc_part(scene, row)
-    else:
+    elif row.kind == WOUND:
         wound_part(scene, row)
+    else:
+        rolling_row(scene, row)
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -106,25 +106,25 @@ def arc_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyth
     n: Vec3 = direction_of(scene, row.a, row.e)
     before: Vec3 = scene.parts[row.part].t
     behind: Vec3 = scene.parts[row.part + 1].t
-    sense: cython.double = 1.0 if row.ratio_b > 0.0 else -1.0
+    sense: cython.double = 1.0 if row.radius > 0.0 else -1.0
     angle: cython.double = atan2(sense * dot(n, cross(before, behind)), dot(before, behind))
     if angle < 0.0:
         angle += WHOLE_TURN
     if angle > NEARLY_ROUND:
         angle -= WHOLE_TURN
-    row.gap = sense * row.ratio_b * angle
+    row.gap = sense * row.radius * angle
     lie_free(row)
 
 
 def wound_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """What of a rope that does not slip is wound on its sheave, more than at first; seen from the carrier c.
 
-    ratio_b times the angle about n from e, both fixed in c, to the strand, and ratio times the sheave's own coordinate.
+    radius times the angle about n from e, both fixed in c, to the strand, and ratio times the sheave's own coordinate.
     """
     n: Vec3 = direction_of(scene, row.c, row.g)
     e: Vec3 = direction_of(scene, row.c, row.e)
     t: Vec3 = scene.parts[row.part].t
-    row.gap = row.ratio_b * atan2(dot(n, cross(e, t)), dot(e, t))
+    row.gap = row.radius * atan2(dot(n, cross(e, t)), dot(e, t))
     if row.ratio != 0.0:
         row.gap += row.ratio * scene.freedoms[row.freedom].q
     lie_free(row)

@@ -11,16 +11,13 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from heuncli.kinetostatics.actions import Action, ActionEnd
+from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
-
-
-LOADS = {"cam": "contact", "rope": "tension"}  # what couplings of a type tell
 
 
 @record
@@ -28,6 +25,7 @@ class PartLoad:
     """Force and moment of one part ON its body b, about the place there, the opposite ON a, about its place on a.
 
     place, place_a (n_t, 3); f, m, m_a (n_t, 3): those for a multiplier of 1, m about the one, m_a about the other.
+    pushed (n_t, 3): the force ON b for one of 1 or of -1; None: none.
     """
 
     part: CouplingPart
@@ -37,11 +35,21 @@ class PartLoad:
     m: Array
     m_a: Array
     multiplier: Array
+    pushed: Array | None = None
 
     @property
     def force(self) -> Array:
         """Force ON b."""
         found: Array = self.multiplier[..., None] * self.f
+        return found if self.pushed is None else found + self.push
+
+    @property
+    def push(self) -> Array:
+        """The part of the force ON b that has the same direction whatever the sign of all multipliers together."""
+        if self.pushed is None:
+            return np.zeros_like(self.multiplier[..., None] * self.f)
+        whole = self.multiplier.reshape(-1, len(self.f)).sum(axis=0)
+        found: Array = (np.where(whole < 0.0, -1.0, 1.0) * self.multiplier)[..., None] * self.pushed
         return found
 
     @property
@@ -84,30 +92,19 @@ class CouplingLoads:
 
     @property
     def carries(self) -> str:
-        """What its load is called: a moment, where it loads by couples alone; of a cam or rope as in LOADS."""
-        if self.coupling.given.type in LOADS:
-            return LOADS[self.coupling.given.type]
+        """What its load is called: a moment, where it loads by couples alone; of a cam the force of contact."""
+        if self.coupling.given.type == "cam":
+            return "contact"
         return "moment" if self.coupling.rows[0].is_couple else "force"
 
     @property
-    def sign(self) -> float:
-        """Of its load against its multiplier."""
-        return -1.0 if self.carries == "tension" else 1.0
-
-    @property
     def carried(self) -> Array:
-        """That load, (..., n_t): the multiplier of the first row; of a cam above zero where it presses, a rope, pulls."""
+        """That load, (..., n_t): the multiplier of the first row; of a cam above zero where it presses."""
         if self.carries != "contact":
-            return self.sign * self.multipliers[0]
+            return self.multipliers[0]
         (load,) = self.parts
         size: Array = load.part.factor * np.sqrt(np.sum(load.f * load.f, axis=-1))
         return size * self.multipliers[0]
-
-    @property
-    def told(self) -> list[tuple[str, int]]:
-        """What is told of it, with the row: its load; of a rope that sheaves hold the last tension, too."""
-        held = self.carries == "tension" and len(self.rows) > 1
-        return [(self.carries, self.rows[0]), *([("last_tension", self.rows[-1])] if held else [])]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
         """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
@@ -119,6 +116,11 @@ class CouplingLoads:
             for _ in row.parts
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
+
+    def parts_of_rows(self) -> Iterator[tuple[int, PartLoad]]:
+        """The parts, each with the closure row that it belongs to."""
+        owners = (r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts)
+        return zip(owners, self.parts, strict=True)
 
     def plus(self, more: Array | None) -> CouplingLoads:
         """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
@@ -139,7 +141,9 @@ class CouplingLoads:
         return found
 
 
-def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | None = None) -> list[CouplingLoads]:
+def coupling_loads(
+    layout: Layout, recovered: Answers, states: BodyStates, only: Collection[str] | None = None
+) -> list[CouplingLoads]:
     """The loads of all couplings, in the order of the spec; only: of those of some names."""
     mechanism, found = layout.mechanism, []
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
@@ -149,19 +153,26 @@ def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | N
         multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
         parts: list[PartLoad] = []
         for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
-            parts += _part_loads(layout, r, row.parts, multiplier, recovered)
+            parts += _part_loads(layout, r, row.parts, multiplier, recovered, states)
         found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
     return found
 
 
 def _part_loads(
-    layout: Layout, r: int, parts: Sequence[CouplingPart], multiplier: Array, recovered: Answers
+    layout: Layout,
+    r: int,
+    parts: Sequence[CouplingPart],
+    multiplier: Array,
+    recovered: Answers,
+    states: BodyStates,
 ) -> Iterator[PartLoad]:
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
         f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
-        yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m + cross_rows(Q - on_a, f), multiplier)
+        pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
+        m_a = m + cross_rows(Q - on_a, f)
+        yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
@@ -172,13 +183,3 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         for part in own.parts
         if not part.part.lies
     ]
-
-
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
-    on = {
-        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
-    }
-    last = {name: -loads.multipliers[-1] for name, _ in loads.told[1:]}
-    return {loads.carries: loads.carried} | last | {"on": on, "open": []}

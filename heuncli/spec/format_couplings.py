@@ -45,8 +45,8 @@ class BeltEntry(Entry):
     type: Literal["belt"]
     of: list[str]
     radii: list[Length]
+    pretension: Force
     crossed: Switch = False
-    pretension: Force = 0.0
 
 
 class DifferentialEntry(Entry):
@@ -97,8 +97,17 @@ class RopeEntry(Entry):
     restitution: Number | None = None
 
 
-CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry
+class ConstantVelocityEntry(Entry):
+    """What makes of a ball a constant-velocity joint."""
+
+    type: Literal["cv"]
+    joint: str
+    axis: Direction
+    to_axis: Direction | None = None
+
+
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
-    "cam": CamEntry, "rope": RopeEntry,
+    "cam": CamEntry, "rope": RopeEntry, "cv": ConstantVelocityEntry,
 }  # fmt: skip

@@ -58,10 +58,10 @@ def prepare(
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
-    if any(coupling.given.type == "rope" for coupling in mechanism.couplings):
-        from heuncli.tree.rope_ways import with_ropes  # few scenes have them
+    if mechanism.couplings:
+        from heuncli.tree.couplings_at_start import with_started  # few scenes have them
 
-        mechanism = with_ropes(mechanism, start)
+        mechanism = with_started(mechanism, start)
     scene = arranged(mechanism, start, stages=stages)
     if fit is not None:
         scene = fit(scene)

@@ -69,15 +69,6 @@ class Way:
     length: float
 
 
-def with_ropes(mechanism: Mechanism, start: Assembly) -> Mechanism:
-    """The mechanism with the conditions of its ropes as they run at the start. Raises SolveError."""
-    made = tuple(
-        routed(mechanism, start, coupling) if isinstance(coupling.given, spec.Rope) else coupling
-        for coupling in mechanism.couplings
-    )
-    return replace(mechanism, couplings=made)
-
-
 def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Coupling:
     """A rope with its conditions."""
     rope = coupling.given
