@@ -164,5 +164,5 @@ def cv_joint(draft: DraftDocument) -> Iterator[Violation]:
         elif joints[own.joint] != "ball":
             message = f"{own.joint} is a {joints[own.joint]}: a constant-velocity joint is made of a ball"
             yield Violation(path, message, "type: ball; the coupling holds its turn about the shafts")
-        elif draft.document.space == "planar":
+        elif draft.document.head.space == "planar":
             yield Violation(path, "shafts that turn alike have no bend in a plane", "a pin, or space: spatial")
