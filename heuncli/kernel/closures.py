@@ -35,7 +35,20 @@ if not cython.compiled:
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.rolling import rolling_row
     from heuncli.kernel.scene import (
-        ARC, CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, WOUND, Body, Carried, Closure, Counter,
+        ARC,
+        CAM,
+        DOT,
+        GUIDE,
+        MESH,
+        ROD,
+        STRAND,
+        SUM,
+        TURN,
+        WOUND,
+        Body,
+        Carried,
+        Closure,
+        Counter,
         Scene,
     )  # fmt: skip
     from heuncli.kernel.shadow import cython

@@ -38,8 +38,8 @@ if not cython.compiled:
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
-    from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tangent_rolling import rolling_along
+    from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tree import direction_of
 
 
