@@ -150,10 +150,8 @@ STOPS = TablePlan(
     _stop_note,
 )
 COUPLED = (
-    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"
-    "tension", "last_tension",
-),
-    *("radial", "axial", "torque", "tight", "slack"),
+    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
+    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
 )
 COUPLINGS = TablePlan(
     "joints",
