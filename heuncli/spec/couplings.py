@@ -40,7 +40,7 @@ class Ratio(NamedTuple):
         return joints_of(self.terms)
 
 
-class Wheel(NamedTuple):
+class RollingWheel(NamedTuple):
     """A wheel that rolls on a plane.
 
     wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
@@ -154,4 +154,4 @@ class Cam(NamedTuple):
         return self.shaft, self.follower
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel  # a union of the classes here
