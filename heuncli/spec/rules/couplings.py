@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec.format import FrictionEntry
 from heuncli.spec.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
@@ -67,6 +68,28 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             angle = math.degrees(getattr(gear, key))
             if not (0.0 if key == "pressure_angle" else -most) <= angle <= most:
                 yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
+
+
+@rule("flanks-rub")
+def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction by what presses knows no radial part of tooth forces, which presses, too."""
+    forces = draft.document.forces.values()
+    if not any(isinstance(own, FrictionEntry) and own.coefficient is not None for own in forces):
+        return
+    for name, gear in draft.document.couplings.items():
+        if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
+            message = "friction by a coefficient does not know yet what teeth push apart with"
+            hint = "set pressure_angle: 0 to leave that out, or give the friction as a torque"
+            yield Violation(("couplings", name), message, hint, key=True)
+
+
+@rule("belt-name")
+def belt_name(draft: DraftDocument) -> Iterator[Violation]:
+    """The pretension of a belt is a load by the belt's name."""
+    for name, belt in draft.document.couplings.items():
+        if isinstance(belt, BeltEntry) and name in draft.names.entries["forces"]:
+            message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
+            yield Violation(("couplings", name), message, "give one of them another name", key=True)
 
 
 @rule("coupling-sizes")
