@@ -14,7 +14,6 @@ from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -170,12 +169,3 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         for part in own.parts
         if part.part.a != part.part.b
     ]
-
-
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
-    on = {
-        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
-    }
-    return {loads.carries: loads.carried, "on": on, "open": []}

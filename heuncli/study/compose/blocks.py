@@ -19,7 +19,8 @@ import numpy as np
 from heuncli.kinetostatics.actions import AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_block
+from heuncli.kinetostatics.coupling_numbers import coupling_block
+from heuncli.kinetostatics.couplings import coupling_actions
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
