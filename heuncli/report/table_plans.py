@@ -154,8 +154,20 @@ COUPLINGS = TablePlan(
     "couplings",
     "coupling",
     (
-        "normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle",
-        "radial", "axial", "torque", "tight", "slack",
+        "normal",
+        "friction",
+        "along",
+        "aside",
+        "grip",
+        "force",
+        "moment",
+        "contact",
+        "pressure_angle",
+        "radial",
+        "axial",
+        "torque",
+        "tight",
+        "slack",
     ),  # fmt: skip
     lambda results, labels: "COUPLINGS  the load that each carries",
 )

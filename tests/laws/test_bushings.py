@@ -50,7 +50,9 @@ def test_energy(more: dict[str, Any]) -> None:
     found = solved(two_bodies(**more))
     assert float(np.linalg.norm(found.forces["mount"]["turn"], axis=1).max()) > 1.0
     e = found.energy
-    near(e["kinetic"] + e["potential"] - e["work"], e["kinetic"][0] + e["potential"][0], float(e["kinetic"].max()), 1e-10)
+    near(
+        e["kinetic"] + e["potential"] - e["work"], e["kinetic"][0] + e["potential"][0], float(e["kinetic"].max()), 1e-10
+    )
     if "damping" in more:
         assert (np.diff(e["work"]) < 0.0).all()
     else:
@@ -65,7 +67,13 @@ def test_alike_in_all_directions_it_has_no_axes() -> None:
     other = two_bodies(stiffness=300.0, turning=5.0)
     other["forces"]["mount"] |= {"from": "engine.c", "to": "ground.O", "orientation": {"axis": [1, 2, 0], "angle": 1.0}}
     apart = two_bodies(stiffness=0.0, turning=5.0)
-    apart["forces"]["spring"] = {"type": "spring", "from": "engine.c", "to": "ground.O", "stiffness": 300.0, "length": 0}
+    apart["forces"]["spring"] = {
+        "type": "spring",
+        "from": "engine.c",
+        "to": "ground.O",
+        "stiffness": 300.0,
+        "length": 0,
+    }
     for scene in (other, apart):
         found = solved(scene)
         for name in ("engine", "rotor"):
@@ -140,7 +148,9 @@ def test_smaller_scenes() -> None:
                 near(found.forces[name][quantity], wanted.forces[name][quantity], 100.0, 1e-8)
 
 
-@pytest.mark.parametrize("mount", [{"turning_preload": [0.3, 0, 0]}, {"orientation": {"axis": [1, 0, 0], "angle": 0.3}}])
+@pytest.mark.parametrize(
+    "mount", [{"turning_preload": [0.3, 0, 0]}, {"orientation": {"axis": [1, 0, 0], "angle": 0.3}}]
+)
 def test_what_leaves_the_plane_is_no_planar_scene(mount: dict[str, Any]) -> None:
     """A moment across the normal, or axes askew to it, turn a free body out of the plane."""
     flat = FLAT.replace("SPACE", "space: auto")

@@ -74,9 +74,7 @@ def rolls(mechanism: Mechanism) -> bool:
 def poses_and_speeds(model: Block) -> str:
     """How many freedoms poses have, and how many speeds, in a sentence."""
     poses, speeds = count(model["pose_freedoms"], "freedom", "freedoms"), model["freedoms"]
-    return (
-        f"{poses} of pose, {speeds} of speed: what rolls without slip holds speeds, and no pose"
-    )
+    return f"{poses} of pose, {speeds} of speed: what rolls without slip holds speeds, and no pose"
 
 
 def reductions(left_out: Sequence[str], scene: PreparedScene, reduced: Reduced | None) -> Block:
