@@ -5,8 +5,8 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Protocol
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import TYPES
@@ -32,7 +32,8 @@ class Following(Protocol):
 
 def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
     """The coupling that an entry means; name: of it, for the places of its expressions."""
-    return MEANINGS[entry.type](by, name, entry)
+    found: c.Coupling = MEANINGS[entry.type](by, name, entry)
+    return found
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
@@ -97,7 +98,8 @@ def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Diff
 
 def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
     """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
-    joint, _, quantity = word.partition(".")
+    joint, _, named = word.partition(".")
+    quantity: Any = named
     return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
 
 
@@ -110,4 +112,11 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     )  # fmt: skip
 
 
-MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}
+MEANINGS: dict[str, Callable[..., c.Coupling]] = {
+    "ratio": ratio,
+    "gear": gear,
+    "screw": screw,
+    "belt": belt,
+    "differential": differential,
+    "cam": cam,
+}
