@@ -26,7 +26,7 @@ class Hold(NamedTuple):
     shifts: those along which it can. A distance has one row, along the line between the points.
     """
 
-    asks: Literal["point", "line", "plane", "distance"]
+    asks: Literal["point", "line", "plane", "distance", "curve"]
     guides: tuple[Direction, ...]
     shifts: tuple[Direction, ...] = ()
 
@@ -48,7 +48,9 @@ POINT = Hold("point", ("first", "second", "axis"))
 LINE = Hold("line", ("first", "second"), ("axis",))
 PLANE = Hold("plane", ("axis",), ("first", "second"))
 DISTANCE = Hold("distance", ())
+CURVE = Hold("curve", ("first", "second"), ("axis",))  # across and along the curve where the point is
 LINE_IN_PLANE = Hold("line", ("across", "z"), ("axis",))
+CURVE_IN_PLANE = Hold("curve", ("across", "z"), ("axis",))
 PLANE_IN_PLANE = Hold("plane", ("axis", "z"), ("across",))
 
 FREE = Turn("free", (), ball=True)
@@ -136,6 +138,11 @@ class Kind(NamedTuple):
         return self.hold is DISTANCE
 
     @property
+    def follows_path(self) -> bool:
+        """Whether its point runs along a path, across which its force acts, and which it alone can hold."""
+        return self.hold.asks == "curve"
+
+    @property
     def rows(self) -> int:
         """How many scalar conditions it makes."""
         return 1 if self.keeps_distance else len(self.guides) + len(self.dots)
@@ -217,6 +224,10 @@ TYPES: dict[str, Kind] = {
             "plane", PLANE, FREE, "forward", axis_key="normal", loads=("damper",), motions=("sliding",),
             planar="flat plane", synonyms=("inplane", "in_plane", "planar", "pointonplane"),
         ),
+        Kind(
+            "curve", CURVE, FREE, "forward", coordinates=("travel",), planar="flat curve",
+            synonyms=("path", "track", "pointoncurve", "point_on_curve"),
+        ),
         Kind("rod", DISTANCE, FREE, "never", drives=("length",), planar="rod",
              synonyms=("distance", "link", "cable", "rope")),
     )
@@ -229,6 +240,7 @@ JOINTS: dict[str, Kind] = TYPES | {
         Kind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), spoken="line"),
         Kind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
              spoken="plane"),
+        Kind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), spoken="curve"),
         Kind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), looser_in_plane=("flat line",), spoken="pin"),
     )
 }  # fmt: skip

@@ -48,9 +48,7 @@ def workspace_of(layout: Layout, holding: Array | None = None) -> workspace.Work
 
 def variables_at(layout: Layout, t: float, state: Array) -> list[float]:
     """What the variables of the expressions are at a state, asked of a kernel of their own."""
-    pack = layout.pack
-    own = expressions.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
-    made = workspace.Workspace(layout.tables, layout.indices, own, numbers_of(layout))
+    made = unsettled(layout)
     return list(made.variables(t, np.array(state, dtype=float)))
 
 
@@ -99,6 +97,33 @@ def settled(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> 
     arrays = {"times": np.array([t]), "states": own, "branches": nothing, "holding": nothing, "columns": nothing}
     at.recover(arrays | {name: as_numbers(table).reshape(-1) for name, table in told.items()}, True, False)
     return own, told["bodies"][0]
+
+
+@record
+class Measured:
+    """How bodies (tree order, tables.BODY_ANSWER; of them R, r, omega, v) and closure rows stand and move at a state.
+
+    gaps, rates (rows,): as the kernel has them, less what is prescribed.
+    """
+
+    bodies: Table
+    gaps: Array
+    rates: Array
+
+
+def unsettled(layout: Layout) -> workspace.Workspace:
+    """The kernel's copy of a scene whose closures may be open yet: their rank is not judged, nor may loads be asked."""
+    pack = layout.pack
+    own = expressions.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
+    return workspace.Workspace(layout.tables, layout.indices, own, numbers_of(layout))
+
+
+def measured(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> Measured:
+    """What is measured at a state as it is, wherever its closures are open."""
+    told = np.empty((1, len(layout.place)), BODY_ANSWER)
+    gaps, rates = np.zeros(len(layout.rows)), np.zeros(len(layout.rows))
+    at.measured(t, np.ascontiguousarray(state, dtype=float), as_numbers(told).reshape(-1), gaps, rates)
+    return Measured(told[0], gaps, rates)
 
 
 @record

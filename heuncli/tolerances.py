@@ -27,6 +27,10 @@ SINGULAR_FALL = 0.5  # of the largest value in the search: on the way through a 
 PUSHED = 1e-8  # of the loads: what of them acts along a motion of a pose known to RANK, a digit above
 NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value, 1e-10 / 1e-6, and keep four digits
 
+# -- couplings: what of a drawing decides whether gears fit
+TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
+TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
+
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
 NO_SELF_STRESS = 1e-13  # of unit multipliers: a null vector that puts less into every joint is rounding
 OPEN_SHARE = 1e-8  # of a self-stress's largest share: a null vector is known to RANK, ten times better
@@ -70,10 +74,13 @@ ORDERS_SETTLED = (
 # -- coordinates of Lagrange's equations
 TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
-# [rad] of what a bushing bears: at half a turn its moment jumps to the other side, and which side it is on is known to
-# the error of a run, which is a thousandth of this where nobody asks for more
-LARGEST_TURN = 3.141592653589793 - 1e-6
 HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
+
+# -- bushings: where they come to half a turn
+# [rad] short of it: there the moment jumps to the other side, and which side it is on is known to the error of a run,
+# which is a thousandth of this where nobody asks for more
+TURNED_OVER = 1e-6
+NEARLY_TURNED_OVER = 1e-3  # the same, where a run could not go on: so near to that it did not for that
 
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
@@ -238,6 +245,8 @@ INERTIA_REFUSED = 1e-3  # of the largest moment: bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
 AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 LEAST_STRENGTH = 1e6  # [Pa] below what bars are made of (foams aside): a strength in MPa was written without its unit
+ALONG_AXIS = 1e-9  # sine or cosine: axes in typed digits that are meant to be parallel, or square
+STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
 EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md, "Expect")
 EXPECTED_ABSOLUTE = 1e-9  # default of `abs`

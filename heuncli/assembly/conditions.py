@@ -14,18 +14,20 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.assembly.drives import CoordinateJet, drive_jet
 from heuncli.errors import Problem, SolveError
+from heuncli.expressions.paths import Path
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.named_tuples import NamedTuple
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import about, perpendicular, turn_onto
 from heuncli.spec.models import Drive
 
-Hold = Literal["none", "point", "line", "plane", "distance"]
+Hold = Literal["none", "point", "line", "plane", "distance", "curve"]
 Turn = Literal["free", "axis", "square", "all"]
 
 SAME_AXES = np.eye(3)
+NO_BEND = np.zeros(3)
 
 
 class Ask(NamedTuple):
@@ -46,7 +48,9 @@ class JointCondition:
 
     across: two unit vectors (2, 3) perpendicular to axis, axes of a, where they are needed. relative: the R_a^T R_b
     that `all` asks for. length: that `distance` asks for [m]. spin, slip, stretch: (rate, acceleration) of the angle
-    about the axis [rad/s], of the travel along it [m/s] and of the length, where `rate` asks for them.
+    about the axis [rad/s], of the travel along it [m/s] and of the length, where `rate` asks for them. path: on which
+    the `to` point is, from p on, where it is not known where; where it is, axis is along it and bend (3,) [1/m] how it
+    curves there.
     """
 
     joint: int
@@ -64,6 +68,8 @@ class JointCondition:
     spin: tuple[float, float]
     slip: tuple[float, float]
     stretch: tuple[float, float]
+    path: Path | None = None
+    bend: Array = NO_BEND
 
 
 def conditions_of(mechanism: Mechanism, t0: float) -> list[JointCondition]:
@@ -108,12 +114,36 @@ def _condition_of(mechanism: Mechanism, k: int, joint: Joint, t0: float, problem
         pose, p = Ask("point", pose.turn), joint.p + travel * joint.axis
     if hold == "line" and slip is not None:
         rate = Ask("point", rate.turn)
+    if hold == "curve" and slip is not None:
+        rate = Ask("point", rate.turn)
     if hold == "distance" and length is None:  # as assembled: asks nothing of the pose, but keeps its length then
         pose = Ask("none", "free")
-    return JointCondition(
+    found = JointCondition(
         k, joint.a, joint.b, p, joint.q, joint.axis, joint.to_axis, across,
-        pose, rate, relative, length or 0.0, spin or (0.0, 0.0), slip or (0.0, 0.0), stretch,
+        pose, rate, relative, length or 0.0, spin or (0.0, 0.0), slip or (0.0, 0.0), stretch, joint.path,
     )  # fmt: skip
+    return found if joint.path is None or travel is None else at_place(found, joint.path, travel, "point")
+
+
+def at_place(d: JointCondition, path: Path, s: float, hold: Hold) -> JointCondition:
+    """What a joint along a path asks where its parameter is s: to stay there ("point") or on the tangent ("line")."""
+    r, slope, bend = path.at(s)
+    square = float(slope @ slope)
+    size = math.sqrt(square)
+    axis = slope / size
+    rate = Ask("line", d.rate.turn) if d.rate.hold == "curve" else d.rate
+    return replace(
+        d, p=d.p + r, axis=axis, across=np.array(perpendicular(axis)), bend=bend / square, path=None,
+        pose=Ask(hold, d.pose.turn), rate=rate, slip=(d.slip[0] * size, d.slip[1] * size),
+    )  # fmt: skip
+
+
+def on_tangent(d: JointCondition, x: Array, R: Array) -> JointCondition:
+    """What a joint asks in a pose: along a path to stay on the tangent of its nearest place, else what it always asks."""
+    if d.path is None:
+        return d
+    D = R[d.a].T @ (x[d.b] + R[d.b] @ d.q - x[d.a]) - d.p
+    return at_place(d, d.path, float(d.path.nearest(D)), "line")
 
 
 def _not_computable(drive: Drive, t0: float) -> Problem:

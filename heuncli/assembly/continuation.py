@@ -29,7 +29,7 @@ def given(mechanism: Mechanism, found: Sequence[JointCondition]) -> dict[int, tu
     asked = {
         k: (
             d.pose.turn == "all" != kind.turn.asks,
-            d.pose.hold == "distance" or d.pose.hold == "point" != kind.hold.asks,
+            d.pose.hold == "distance" or (d.pose.hold == "point" != kind.hold.asks and not kind.follows_path),
         )
         for k, (d, kind) in enumerate(zip(found, kinds, strict=True))
     }

@@ -22,7 +22,7 @@ class JointGaps:
             k = [i for i in range(len(found)) if asks[i] == ask]
             columns = {
                 name: np.array([getattr(found[i], name) for i in k])
-                for name in ("a", "b", "p", "q", "axis", "to_axis", "relative", "length")
+                for name in ("a", "b", "p", "q", "axis", "to_axis", "relative", "length", "path")
             }
             self.groups.append((ask, np.array(k), columns))
 
@@ -36,6 +36,8 @@ class JointGaps:
         for ask, k, c in self.groups:
             Ra, Rb = R[..., c["a"], :, :], R[..., c["b"], :, :]
             D = x[..., c["b"], :] + _apply(Rb, c["q"]) - x[..., c["a"], :] - _apply(Ra, c["p"])
+            if ask.hold == "curve":
+                D = D - _nearest(c["path"], Ra, D)
             distance[..., k] = _distance(ask, D, _apply(Ra, c["axis"]), c["length"])
             angle[..., k] = _angle(ask, Ra, Rb, c)
         return distance, angle
@@ -43,6 +45,14 @@ class JointGaps:
 
 def _apply(R: Array, a: Array) -> Array:
     return np.asarray(np.einsum("...ij,...j->...i", R, a))
+
+
+def _nearest(paths: Array, Ra: Array, D: Array) -> Array:
+    """The place of each path that is nearest to its point, world axes, (..., n, 3); paths as objects."""
+    found = np.einsum("...ji,...j->...i", Ra, D)
+    for i, path in enumerate(paths):
+        found[..., i, :] = path.at(path.nearest(found[..., i, :]))[0]
+    return _apply(Ra, found)
 
 
 def _distance(ask: Ask, D: Array, n: Array, length: Array) -> Array:

@@ -15,7 +15,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.conditions import Ask, JointCondition
+from heuncli.assembly.conditions import Ask, JointCondition, on_tangent
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross, hat, to_vector
@@ -40,6 +40,7 @@ class Rows:
 
 def pose_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
     """Minus the gaps of a joint [m], [rad], in a pose; s (n+1, 3) pivots."""
+    d = on_tangent(d, x, R)
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
     D = P - x[d.a] - Ra @ d.p
@@ -122,6 +123,7 @@ def _turned(d: JointCondition, Ra: Array, Rb: Array) -> Array:
 
 def rate_rows(d: JointCondition, x: Array, R: Array, s: Array) -> Rows:
     """What a joint asks of the rates [m/s], [rad/s], in a closed pose (lacking, when all is at rest)."""
+    d = on_tangent(d, x, R)
     Ra, Rb = R[d.a], R[d.b]
     P = x[d.b] + Rb @ d.q
     F, T = _held(d, d.rate, Ra, P - x[d.a] - Ra @ d.p), _turned(d, Ra, Rb)
@@ -152,12 +154,14 @@ def missing(d: JointCondition, row: Rows, v: Array, w: Array) -> tuple[Array, Ar
 
 def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array, w: Array) -> Rows:
     """What a joint asks of the accelerations: −γ − g̈_t [m/s2], [rad/s2], from its rate rows and rates that fit them."""
+    d = on_tangent(d, x, R)
     wa, wb = w[d.a], w[d.b]
     u = v[d.b] + cross(wb, row.r_b) - v[d.a] - cross(wa, row.r_a)
     hold, turn = _given(d, row.F, row.T, 1)
     if len(row.F):
         centripetal = cross(wb, cross(wb, row.r_b)) - cross(wa, cross(wa, row.r_a))
         hold = hold - row.F @ (centripetal - 2.0 * cross(wa, u))
+        hold = hold + (row.F @ (R[d.a] @ d.bend)) * float(d.axis @ R[d.a].T @ u) ** 2
     if d.rate.hold == "distance":  # the part of u across the rod turns it
         D = x[d.b] + R[d.b] @ d.q - x[d.a] - R[d.a] @ d.p
         hold = hold - (u @ u - (row.F[0] @ u) ** 2) / (row.F[0] @ D)

@@ -147,6 +147,8 @@ def place(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
         poses.turn(body, asked_attitude(d, R[d.a], R[d.b], is_to))
     if poses.shifts[body]:
         D = (x[d.b] + R[d.b] @ d.q) - (x[d.a] + R[d.a] @ d.p)
+        if d.path is not None:  # to the nearest place
+            D = D - R[d.a] @ d.path.at(d.path.nearest(R[d.a].T @ D))[0]
         shift = to_close(d, R[d.a] @ d.axis, D)
         x[body] += shift if is_to else -shift
 
@@ -178,7 +180,7 @@ def _square(m: Array, n: Array) -> Array:
 def to_close(d: JointCondition, n: Array, D: Array) -> Array:
     """The least shift of the `to` point that closes the hold, (3,); n the axis, D from its place on `from`, world."""
     hold = d.pose.hold
-    if hold == "point":
+    if hold in ("point", "curve"):
         return -D
     if hold == "line":
         return (n @ D) * n - D

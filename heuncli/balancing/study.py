@@ -15,12 +15,13 @@ from heuncli.balancing.harmonics import tail
 from heuncli.balancing.results import BalanceResults
 from heuncli.balancing.rows import CycleTurning
 from heuncli.balancing.told import is_asked, told
+from heuncli.coupled_start.prepared import prepare_coupled
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import draw
-from heuncli.tree.prepare import PreparedScene, prepare
+from heuncli.tree.prepare import PreparedScene
 
 GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
 
@@ -76,7 +77,7 @@ def drawn(spec: Spec) -> PreparedScene:
     """The scene, assembled."""
     mechanism, _ = draw(spec._replace(sections={}))
     t = spec.analysis.times[0] if spec.analysis.type == "state" and spec.analysis.times else 0.0
-    return prepare(mechanism, t)
+    return prepare_coupled(mechanism, t)
 
 
 def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:

@@ -80,7 +80,10 @@ def combined(a: Expression, b: Expression, op: int, source: str) -> Expression:
     """An operation on two expressions, as one program."""
     uses = tuple(dict.fromkeys((*a.uses, *b.uses)))
     held = (*a.held, *b.held)
-    parts = [_moved(a, a.code, (0, 0, 0), uses), _moved(b, b.code, (len(a.constants), len(a.tables), len(a.held)), uses)]
+    parts = [
+        _moved(a, a.code, (0, 0, 0), uses),
+        _moved(b, b.code, (len(a.constants), len(a.tables), len(a.held)), uses),
+    ]
     code = (*parts[0], *parts[1])
     switches = [
         Switch(_moved(e, s.decision, by, uses), None if s.margin is None else _moved(e, s.margin, by, uses))

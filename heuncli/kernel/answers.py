@@ -130,6 +130,19 @@ def recover_state(
     return idle
 
 
+def put_measured(
+    scene: cython.pointer[Scene], bodies: cython.p_double, gaps: cython.p_double, rates: cython.p_double
+) -> cython.void:
+    """All bodies, as `put_body`, and gap and rate of each closure row, as they stand: nothing is settled."""
+    i: cython.Py_ssize_t
+    at: cython.Py_ssize_t = 0
+    for i in range(scene.body_count):
+        at = put_body(bodies, at, cython.address(scene.bodies[i]))
+    for i in range(scene.closure_count):
+        gaps[i] = scene.closures[i].gap
+        rates[i] = scene.closures[i].rate
+
+
 def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
     """How well the answer found meets all rows, those left out too; how independent the others are, and their doubt."""
     measure_rows(scene, t)

@@ -27,12 +27,14 @@ if not cython.compiled:
         scaled,
         sub,
     )
+    from heuncli.kernel.cams import cam_part
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.jets import jet
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
+    from heuncli.kernel.rolling import rolling_row
+    from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import answered, direction_of, push
 
@@ -75,11 +77,15 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind != MESH and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+    if (
+        scene.flat and row.kind != MESH and row.kind != CAM and row.e.z == 0.0 and row.g.z == 0.0
+    ):  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
-    if row.kind == GUIDE:
+    if row.kind == CAM:
+        cam_part(scene, row)
+    elif row.kind == GUIDE:
         guide_row(scene, row)
     elif row.kind == DOT:
         dot_row(scene, row)
@@ -87,8 +93,10 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         turn_row(scene, row)
     elif row.kind == ROD:
         rod_row(scene, row)
-    else:
+    elif row.kind == MESH:
         mesh_part(scene, row)
+    else:
+        rolling_row(scene, row)
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -187,9 +187,7 @@ def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cytho
     return angle
 
 
-def motion_in(
-    scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint
-) -> Vec3:
+def motion_in(scene: cython.pointer[Scene], load: cython.pointer[Load], v: Vec3, slides: cython.bint) -> Vec3:
     """Velocity of b's point, which moves with v, or angular velocity of b, as seen from a."""
     return sliding_in(scene, load, v) if slides else sub(omega_of(scene, load.b), omega_of(scene, load.a))
 

@@ -20,6 +20,7 @@ if not cython.compiled:
     from math import cos, sin
 
     from heuncli.kernel.algebra import Mat3, Sym3, Vec3
+    from heuncli.kernel.paths import run_along
     from heuncli.kernel.scene import SHIFT, Body, Freedom, Scene
     from heuncli.kernel.shadow import cython
 
@@ -62,7 +63,16 @@ def hang_in_plane(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> c
         y = s * body.joint_in_parent.x + c * body.joint_in_parent.y
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-        if freedom.kind == SHIFT:
+        if freedom.pieces:
+            place: Vec3 = run_along(scene, body.parent, freedom)
+            bent: cython.double = freedom.u * freedom.u
+            x += place.x
+            y += place.y
+            wx += freedom.u * freedom.s.x
+            wy += freedom.u * freedom.s.y
+            px += freedom.udot * freedom.s.x + bent * freedom.curved.x
+            py += freedom.udot * freedom.s.y + bent * freedom.curved.y
+        elif freedom.kind == SHIFT:
             sx: cython.double = c * freedom.direction.x - s * freedom.direction.y
             sy: cython.double = s * freedom.direction.x + c * freedom.direction.y
             freedom.s = Vec3(sx, sy, 0.0)

@@ -246,6 +246,10 @@ def bound_joint_point(
     for k in range(body.first_freedom, body.end_freedom):
         if scene.freedoms[k].kind == SHIFT:
             most: Jet = most_of(scene, course, k, x0, x1)
+            if scene.freedoms[k].pieces:
+                freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
+                bent: cython.double = freedom.bend * most.rate * most.rate
+                most = Jet(freedom.reach, freedom.slope * most.rate, freedom.slope * most.second + bent)
             arm += most.value
             speed += most.rate
             pull += most.second

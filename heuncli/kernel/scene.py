@@ -20,7 +20,8 @@ TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
 BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
 ALONG_LINE = 3  # of a load: its length; before that the components of its strain
-GUIDE, DOT, ROD, TURN, SUM, MESH = range(6)
+GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
+TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -82,8 +83,16 @@ class Freedom(Record):
     program: Program  # of the drive
     direction: Vec3  # fixed in the parent, or (TURN_IN_BODY) in the body
     offset: float  # of the coordinate against the drive's
+    path: int  # of a point that runs along a path: its first piece
+    pieces: int  # and how many it has; 0: its direction is fixed
+    period: float  # of the coordinate, where the path is closed; else 0
+    reach: float  # bounds of the path's |r|, |r'| and |r''|
+    slope: float
+    bend: float
 
-    s: Vec3  # its direction
+    s: Vec3  # its direction, of unit length or, along a path, r'
+    curved: Vec3  # along a path r'', else zero
+    twisted: Vec3  # and r'''
     U_turn: Vec3  # inertia against it, I s: moment and force
     U_shift: Vec3
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
@@ -147,7 +156,9 @@ class Closure(Record):
     TURN: a pin's angle = length, about e fixed in a. SUM: of its parts, each of which is such a condition of two bodies
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
-    coordinates of two freedoms.
+    coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
+    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: a wheel's on a plane (kernel/rolling.py); those that roll
+    hold a speed, and have no gap.
     """
 
     kind: int
@@ -177,6 +188,14 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    pieces: int
+    period: float
+    swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    radius: float  # of the roller; 0: a point
+    pivot: Vec3
+    h: Vec3
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -226,6 +245,25 @@ class Contact(Record):
     rate_bent: float
     rate_before: float
     rate_first: float
+
+
+class Piece(Record):
+    """A piece of a path: c0 + c1 h + c2 h^2 + c3 h^3, h from where the coordinate is `begin`."""
+
+    begin: float
+    c0: Vec3
+    c1: Vec3
+    c2: Vec3
+    c3: Vec3
+
+
+class PathPoint(Value):
+    """A place of a path with its derivatives by the coordinate."""
+
+    r: Vec3
+    slope: Vec3
+    bend: Vec3
+    twist: Vec3
 
 
 class Counter(Record):
@@ -451,6 +489,52 @@ class RowTangent(Value):
     acceleration: float
 
 
+class Moving(Value):
+    """A vector and its rate."""
+
+    x: Vec3
+    rate: Vec3
+
+
+class MovingTangent(Value):
+    """A vector with its rate, and what both change by along a direction of the state."""
+
+    own: Moving
+    change: Moving
+
+
+class WheelContact(Value):
+    """Where a wheel touches its plane, and the direction that a row of it looks along."""
+
+    c: Moving
+    e: Moving
+
+
+class WheelTangent(Value):
+    """The same with what it changes by along a direction of the state."""
+
+    c: MovingTangent
+    e: MovingTangent
+
+
+class Cam(Value):
+    """A cam and its follower in the world; or what these change by."""
+
+    e: Vec3  # the disc's axis
+    g: Vec3  # the follower's axis or guide
+    C: Vec3  # the follower's point, from the disc's axis on
+    w: Vec3  # its velocity against the carrier, by a unit of the follower's rate
+    h: Vec3  # the normal of its face
+    slope: float  # L'
+
+
+class CamContact(Value):
+    """Where a cam touches, from the follower's point on, and the direction of its load there, of any length."""
+
+    beside: Vec3
+    n: Vec3
+
+
 class MotionTangent(Value):
     """What velocity and acceleration of a place that a body carries change by."""
 
@@ -536,6 +620,7 @@ class Scene(Struct):
     parts: list[Closure]  # of those that are sums
     counters: list[Counter]
     variables: list[Variable]
+    pieces: list[Piece]
     bodies_beside: list[Body]  # others of the same kind, on which points are looked at without a trace
     freedoms_beside: list[Freedom]
     lents: list[Lent]

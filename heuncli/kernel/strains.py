@@ -1,8 +1,8 @@
 """How a load between two bodies is strained: the length of its line, a bushing's shift and turn in its own axes.
 
-    d = T' (x_b - x_a)              shift of b's point against a's, in the axes T = R_a F_a, which turn with a
-    exp [phi] = T' R_b F_b          rotation vector of b against a, in the same axes; |phi| <= pi
-    l = |x_b - x_a|,  l' = n . (v_b - v_a)
+d = T' (x_b - x_a)              shift of b's point against a's, in the axes T = R_a F_a, which turn with a
+exp [phi] = T' R_b F_b          rotation vector of b against a, in the same axes; |phi| <= pi
+l = |x_b - x_a|,  l' = n . (v_b - v_a)
 """
 
 from __future__ import annotations

@@ -14,14 +14,29 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.cams import cam_along
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Closure, LoadTangent, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import (
+        CAM,
+        DOT,
+        GUIDE,
+        MESH,
+        SUM,
+        TOUCHES,
+        TURN,
+        Closure,
+        LoadTangent,
+        MotionTangent,
+        RowTangent,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tree import direction_of
 
 
@@ -45,7 +60,11 @@ def condition_loads_along(
     scene: cython.pointer[Scene], row: cython.pointer[Closure], force: cython.double
 ) -> cython.double:
     """What a condition of two bodies demands of the answer; its load, as it changes, on them."""
-    if is_still(scene, row.a) and is_still(scene, row.b) and is_still(scene, row.c if row.kind == MESH else -1):
+    if (
+        is_still(scene, row.a)
+        and is_still(scene, row.b)
+        and is_still(scene, row.c if row.kind == MESH or row.kind == CAM else -1)
+    ):
         return 0.0
     d: RowTangent = condition_along(scene, row)
     load: LoadTangent = LoadTangent(d.Q, scaled(force, d.f), scaled(force, d.m))
@@ -80,6 +99,10 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
     """The same of a condition of two bodies."""
     if row.kind == MESH:
         return mesh_along(scene, row)
+    if row.kind == CAM:
+        return cam_along(scene, row)
+    if row.kind >= TOUCHES:
+        return rolling_along(scene, row)
     Q: Vec3 = point_along(scene, row.b, row.q).x
     if row.kind == GUIDE:
         return guide_along(scene, row, Q)

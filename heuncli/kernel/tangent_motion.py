@@ -13,7 +13,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, rotate, scaled, sub, transform
+    from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, rotate, scaled, sub, transform
     from heuncli.kernel.scene import (
         SHIFT,
         TURN_IN_BODY,
@@ -148,12 +148,20 @@ def shift_along(
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
         own: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[k])
         if freedom.kind == SHIFT:
-            own.s = cross(turn, freedom.s)
+            own.s = add_scaled(cross(turn, freedom.s), own.q, freedom.curved)
             d.arm = add_scaled(d.arm, own.q, freedom.s)
+            if freedom.pieces:
+                d.a = add(d.a, bent_along(freedom, own, turn))
             d.v = add_scaled(add_scaled(d.v, own.u, freedom.s), freedom.u, own.s)
             d.a = add_scaled(d.a, own.udot, own.s)
     if body.parent < 0:
         d.r = d.arm
+
+
+def bent_along(freedom: cython.pointer[Freedom], own: cython.pointer[FreedomTangent], turn: Vec3) -> Vec3:
+    """Of u^2 r'', what a path adds to sum udot s; it turns with the parent, and changes with the coordinate."""
+    bend: Vec3 = add_scaled(cross(turn, freedom.curved), own.q, freedom.twisted)
+    return scaled(freedom.u, add_scaled(scaled(2.0 * own.u, freedom.curved), freedom.u, bend))
 
 
 def orient_along(

@@ -1,7 +1,7 @@
 """What the variables that hang on where bodies are change by along a direction of the state (strains.py).
 
-    l = |D|, D = l n:   dl = n . dD,  dn = (dD - n dl) / l,  d(l') = dn . v + n . dv
-    dd = T' (dD - t x D),   dphi = J^-1 T' (t_b - t_a)                  t: what a turns by, T turns with it
+l = |D|, D = l n:   dl = n . dD,  dn = (dD - n dl) / l,  d(l') = dn . v + n . dv
+dd = T' (dD - t x D),   dphi = J^-1 T' (t_b - t_a)                  t: what a turns by, T turns with it
 """
 
 from __future__ import annotations

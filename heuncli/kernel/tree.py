@@ -57,6 +57,7 @@ if not cython.compiled:
         unit_matrix,
     )
     from heuncli.kernel.jets import jet
+    from heuncli.kernel.paths import run_along
     from heuncli.kernel.plane import (
         add_zeros_in_plane,
         balance_in_plane,
@@ -154,6 +155,7 @@ def hang(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.voi
     """Joint point, its velocity and its velocity terms, from the parent and the shifts of the joint.
 
     r = r_p + l,  v = v_p + omega_p x l + w,  a - a_p - alpha_p x l = omega_p x (omega_p x l + 2 w) + wdot, w = sum u s
+    Along a path s = r' turns with the coordinate: wdot = udot r' + u^2 r''.
     """
     k: cython.Py_ssize_t
     sliding: Vec3 = Vec3(0.0, 0.0, 0.0)
@@ -161,7 +163,11 @@ def hang(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> cython.voi
     body.arm = direction_of(scene, body.parent, body.joint_in_parent)
     for k in range(body.first_freedom, body.end_freedom):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[k])
-        if freedom.kind == SHIFT:
+        if freedom.pieces:
+            body.arm = add(body.arm, run_along(scene, body.parent, freedom))
+            sliding = add_scaled(sliding, freedom.u, freedom.s)
+            pushed = add_scaled(add_scaled(pushed, freedom.udot, freedom.s), freedom.u * freedom.u, freedom.curved)
+        elif freedom.kind == SHIFT:
             freedom.s = direction_of(scene, body.parent, freedom.direction)
             body.arm = add_scaled(body.arm, freedom.q, freedom.s)
             sliding = add_scaled(sliding, freedom.u, freedom.s)

@@ -19,7 +19,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.answers import carry, put_jacobian, recover_states, take_holding
+    from heuncli.kernel.answers import carry, put_jacobian, put_measured, recover_states, take_holding
     from heuncli.kernel.chosen import choose_afresh, judge_start
     from heuncli.kernel.closures import measure_rows
     from heuncli.kernel.columns import answer_blow, answer_column, measure_answers
@@ -89,6 +89,13 @@ class Workspace:
         measure_rows(scene, t)
 
     # What is asked of it
+
+    def measured(self, t: cython.double, state: Any, bodies: Any, gaps: Any, rates: Any) -> None:
+        """How bodies and closure rows stand and move at a state as it is, into flat arrays: nothing is settled."""
+        memory: Memory = Memory()
+        self.measure_at(t, state)
+        put_measured(cython.address(self.scene), memory.whole(bodies), memory.whole(gaps), memory.whole(rates))
+        memory.fetch()
 
     def variables(self, t: float, state: Any) -> list[float]:
         """The variables of the expressions at a state, which is not changed."""

@@ -147,7 +147,7 @@ def _ends(
     if isinstance(load, PairLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
     if isinstance(load, Bushing):
-        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, None, apart=True)
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, load.p, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)
 

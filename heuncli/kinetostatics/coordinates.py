@@ -20,7 +20,9 @@ def coordinates(layout: Layout, recovered: Recovered, states: BodyStates) -> Blo
         kind = JOINTS[joint.kind]
         if "angle" in kind.coordinates:
             block[joint.name] = _turning(layout, recovered, states, k, joint)
-        if "travel" in kind.coordinates:
+        if kind.follows_path:
+            block[joint.name] = _along_path(layout, recovered, k)
+        elif "travel" in kind.coordinates:
             travel = _sliding(states, joint)
             if joint.name in block:
                 block[joint.name]["angular_acceleration"] = block[joint.name].pop("acceleration")
@@ -53,6 +55,13 @@ def _turning(layout: Layout, recovered: Recovered, states: BodyStates, k: int, j
         "rate": rate,
         "acceleration": acceleration,
     }
+
+
+def _along_path(layout: Layout, recovered: Recovered, k: int) -> Block:
+    """Of a joint that is never cut: the path's parameter."""
+    own = next(i for i, f in enumerate(layout.freedoms) if (f.joint, f.quantity) == (k, "travel"))
+    found = recovered.freedoms
+    return {"travel": found["q"][:, own], "speed": found["u"][:, own], "acceleration": found["udot"][:, own]}
 
 
 def _sliding(states: BodyStates, joint: Joint) -> Block:

@@ -17,6 +17,7 @@ from typing import Protocol
 
 import numpy as np
 
+from heuncli.expressions.paths import Path
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint, Stop
@@ -231,6 +232,18 @@ def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     return force * IN_PLANE, moment * ACROSS
 
 
+def across_path(joint: Joint, path: Path, states: BodyStates, force: Array) -> Array:
+    """The part of a force across the path where the joint's point is on it."""
+    D = states.point_position(joint.b, joint.q) - states.point_position(joint.a, joint.p)
+    if joint.a >= 0:
+        D = np.einsum("tji,tj->ti", states.R[:, joint.a], D)
+    slope = path.at(path.nearest(D))[1]
+    n = slope / np.sqrt(np.sum(slope * slope, axis=1))[:, None]
+    if joint.a >= 0:
+        n = np.einsum("tij,tj->ti", states.R[:, joint.a], n)
+    return force - np.sum(force * n, axis=-1)[..., None] * n
+
+
 def constraint_map(joint: Joint, states: BodyStates) -> Array:
     """The map of a wrench in the joint to what of it its constraint carries, (n_t, 6, 6)."""
     wrenches = np.broadcast_to(np.eye(6)[:, None, :], (6, len(states.x), 6))
@@ -250,6 +263,8 @@ def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Arr
     elif kind.turns:
         n = states.direction(joint.a, joint_frame(joint, kind.turns[0]))
         moment = moment - np.sum(moment * n, axis=-1)[..., None] * n
+    if joint.path is not None:
+        return across_path(joint, joint.path, states, force), moment
     for d in kind.shifts:
         n = states.direction(joint.a, joint_frame(joint, d))
         force = force - np.sum(force * n, axis=-1)[..., None] * n

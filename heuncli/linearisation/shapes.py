@@ -16,7 +16,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.linearisation.linearise import Linearised
 from heuncli.mechanism.model import GROUND, Joint
 from heuncli.results import Array
-from heuncli.tree.layout import Layout
+from heuncli.tree.layout import Layout, places_of_rates
 
 AXES = ("x", "y", "z")
 IN_PLANE = ("z", "dx", "dy")  # what is left in a scene that is declared planar
@@ -52,11 +52,21 @@ def of_joint(layout: Layout, found: Linearised, joint: Joint) -> dict[str, Array
         rows["angle"] = axis @ turn
     elif kind.ball or kind.turns:
         rows |= dict(zip(AXES, turn, strict=True))
-    if len(kind.shifts) == 1:
+    if joint.path is not None:
+        rows["travel"] = along_path(layout, joint)
+    elif len(kind.shifts) == 1:
         rows["travel"] = axis @ shift
     elif kind.shifts:
         rows |= dict(zip((f"d{a}" for a in AXES), shift, strict=True))
     return rows
+
+
+def along_path(layout: Layout, joint: Joint) -> Array:
+    """Of the parameter of a path: a freedom of the tree, which is never cut."""
+    names = [own.name for own in layout.mechanism.joints]
+    own = next(f for f in layout.freedoms if f.joint >= 0 and names[f.joint] == joint.name and f.quantity == "travel")
+    places = places_of_rates(layout)
+    return np.where(places[places >= 0] == own.u, 1.0, 0.0)
 
 
 def twist(layout: Layout, found: Linearised, body: int, point: Array, at: Array | None) -> tuple[Array, Array]:

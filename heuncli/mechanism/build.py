@@ -10,6 +10,7 @@ import numpy as np
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.directions import unit
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
@@ -68,19 +69,21 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
     conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
     values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
     points = points_used(spec, values, index)
+    stops = tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values()))
     if planar:
-        told = {joints[s.joint][0] for s in (*spec.stops.values(), *spec.latches.values())} | coordinates_used(
-            loads, values, joints
-        )
+        told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
+        seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+        from heuncli.mechanism.build_couplings import couplings_of, pretensions  # few scenes have them
 
-        couplings = couplings_of(spec, made, {name: k for name, (k, _) in joints.items()})
+        number = {name: k for name, (k, _) in joints.items()}
+        couplings = couplings_of(spec, made, bodies, number)
+        loads += pretensions(spec, made, bodies, number)
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -89,7 +92,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         joints=made,
         loads=loads,
         blows=tuple(blow(b, index) for b in spec.impulses.values()),
-        stops=tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values())),
+        stops=stops,
         conditions=conditions,
         points=points,
         couplings=couplings,
@@ -104,14 +107,6 @@ def optional(value: m.Vec | m.Matrix | None) -> Array | None:
 def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
     """A vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.in_body)
-
-
-def unit(vector: m.Vec) -> Array:
-    """The direction of a vector that the spec layer found not to be zero."""
-    v = np.array(vector, dtype=float)
-    v = v / np.abs(v).max()
-    along: Array = v / np.sqrt(v @ v)
-    return along
 
 
 def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:
@@ -145,7 +140,7 @@ def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
 
 def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
     """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
-    axis = unit(j.axis)
+    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
     return Joint(
         name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
         a=a, p=np.array(j.p), b=b, q=np.array(j.q),
@@ -153,13 +148,13 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
-        p_name=j.p_name, q_name=j.q_name,
+        p_name=j.p_name, q_name=j.q_name, path=j.path,
     )  # fmt: skip
 
 
 def coupled(spec: m.Spec) -> set[str]:
     """The joints whose coordinates are coupled."""
-    return {term.joint for coupling in spec.couplings.values() for term in coupling.terms}
+    return {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(
@@ -213,7 +208,9 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
         case m.Actuator() | m.Spring():
             a, b = f.from_, f.to
-            spring = (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
             return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
         case m.Bushing():
             return bushing(name, f, index)

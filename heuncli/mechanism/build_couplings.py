@@ -2,36 +2,149 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from heuncli.mechanism.couplings import Coordinate, CoupledRow, Coupling, CouplingPart
-from heuncli.mechanism.model import Joint
-from heuncli.records import replace
+import numpy as np
+
+from heuncli.errors import Finding, Problem, SpecError
+from heuncli.expressions.paths import path_of
+from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
+from heuncli.mechanism.directions import unit
+from heuncli.mechanism.gearing import gear_row
+from heuncli.mechanism.model import GROUND, Body, Joint, PairLoad
+from heuncli.mechanism.strands import belt_row, pretension_of
+from heuncli.mechanism.threads import screw_row
+from heuncli.mechanism.wheels import Ends, ball_rows, disc_rows
+from heuncli.records import record
+from heuncli.results import Array
 from heuncli.spec import couplings as c
-from heuncli.spec.models import Spec
+from heuncli.spec.models import End, Spec
 
 SIZE = 0.0  # weight of gaps that are angles: the scene's size
 
 
-def couplings_of(spec: Spec, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[Coupling, ...]:
-    """All couplings, in the order of the spec; number: of the joints by their names."""
+def couplings_of(
+    spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
+) -> tuple[Coupling, ...]:
+    """All couplings, in the order of the spec; number: of the joints by their names. Raises SpecError with all misfits."""
+    drawn = Drawing(spec, joints, bodies, number)
+    found, problems = [], []
+    for name, given in spec.couplings.items():
+        try:
+            found.append(Coupling(name, MADE[given.type](given, drawn), given))
+        except Finding as misfit:
+            path = f"{'rolling' if given.type == 'wheel' else 'couplings'}.{name}"
+            problems.append(Problem(misfit.code, misfit.message, spec.location(path), misfit.hint))
+    if problems:
+        raise SpecError(*problems)
+    return tuple(found)
+
+
+def pretensions(
+    spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
+) -> tuple[PairLoad, ...]:
+    """What belts pull their pulleys together with, by the belts' names."""
+    drawn = Drawing(spec, joints, bodies, number)
+    belts = {name: own for name, own in spec.couplings.items() if own.type == "belt" and own.pretension > 0.0}
     return tuple(
-        Coupling(name, MADE[given.type](given, joints, number), given) for name, given in spec.couplings.items()
+        pretension_of(name, own, joints, bodies, (drawn.of(own.terms)[0], drawn.of(own.terms)[1]))
+        for name, own in belts.items()
     )
 
 
-def ratio(given: c.Ratio, joints: Sequence[Joint], number: Mapping[str, int]) -> tuple[CoupledRow, ...]:
+@record
+class Drawing:
+    """The joints and bodies that couplings look at; number: of the joints by their names."""
+
+    spec: Spec
+    joints: Sequence[Joint]
+    bodies: Sequence[Body]
+    number: Mapping[str, int]
+
+    def of(self, terms: Sequence[c.Term]) -> list[int]:
+        """The joints of terms."""
+        return [self.number[x.joint] for x in terms]
+
+    def place(self, end: End) -> tuple[int, Array]:
+        """A body's number, or the ground's, and its point."""
+        names = [body.name for body in self.bodies]
+        return (names.index(end.body) if end.body in names else GROUND), np.array(end.point)
+
+
+def ratio(given: c.Ratio, drawn: Drawing) -> tuple[CoupledRow, ...]:
     """The sum of coordinates, each times its factor: a couple about each axis, a force along each guide."""
-    parts = tuple(of_coordinate(joints, number[x.joint], x.quantity, x.factor) for x in given.terms)
+    parts = tuple(of_coordinate(drawn, x, x.factor) for x in given.terms)
     turning = all(x.quantity == "angle" for x in given.terms)
     return (CoupledRow(parts, given.is_, SIZE if turning else 1.0),)
 
 
-def of_coordinate(joints: Sequence[Joint], k: int, quantity: str, factor: float) -> CouplingPart:
+def differential(given: c.Differential, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """first - ratio second - (1 - ratio) carrier stays what it is."""
+    factors = (1.0, -given.ratio, given.ratio - 1.0)
+    parts = tuple(of_coordinate(drawn, x, factor) for x, factor in zip(given.terms, factors, strict=True))
+    return (CoupledRow(parts, None, SIZE),)
+
+
+def gear(given: c.Gear, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """The tooth force at the pitch point."""
+    one, other = drawn.of(given.terms)
+    at = None if given.at is None else drawn.place(given.at)
+    return (gear_row(given, drawn.joints, drawn.bodies, (one, other), at),)
+
+
+def screw(given: c.Screw, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """The thrust along the axis, and the torque about it."""
+    one, other = drawn.of(given.terms)
+    return (screw_row(given, drawn.joints, drawn.bodies, (one, other)),)
+
+
+def belt(given: c.Belt, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """The pulls of both strands."""
+    one, other = drawn.of(given.terms)
+    return (belt_row(given, drawn.joints, drawn.bodies, (one, other)),)
+
+
+def of_coordinate(drawn: Drawing, term: c.Term, factor: float) -> CouplingPart:
     """The condition on a joint's coordinate: of an angle its couple, of a travel its force."""
-    joint = joints[k]
-    found = CouplingPart("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
-    return found if quantity == "travel" else replace(found, kind="turn", coordinates=(Coordinate(k, "angle", 1.0),))
+    k = drawn.number[term.joint]
+    joint = drawn.joints[k]
+    if term.quantity == "travel":
+        return CouplingPart("guide", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor)
+    coordinates = (Coordinate(k, "angle", 1.0),)
+    return CouplingPart(
+        "turn", joint.a, joint.b, joint.p, joint.q, joint.axis, factor=factor, coordinates=coordinates
+    )  # fmt: skip
 
 
-MADE = {"ratio": ratio}
+def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
+    k, n = drawn.number[given.shaft], drawn.number[given.follower]
+    shaft, follower = drawn.joints[k], drawn.joints[n]
+    swings = JOINTS[follower.kind].coordinates[0] == "angle"
+    shape = CamShape(
+        path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,
+        None if given.normal is None else unit(given.normal),
+    )  # fmt: skip
+    coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)
+    part = CouplingPart(
+        "cam", shaft.b, follower.b, shaft.p, np.array(given.at), shaft.axis, follower.axis,
+        1.0 if given.both else -1.0, shaft.a, coordinates, cam=shape,
+    )  # fmt: skip
+    return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
+
+
+def wheel(given: c.Wheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """A wheel on its plane."""
+    (b, q), (a, p) = drawn.place(given.wheel), drawn.place(given.on)
+    ends: Ends = {"a": a, "b": b, "p": p, "q": q, "e": unit(given.normal)}
+    if given.axis is None:
+        return ball_rows(ends, given.radius)
+    ways = {"along": not given.slides, "aside": drawn.spec.space != "planar"}  # in the plane nothing goes aside
+    return disc_rows(ends, unit(given.axis), given.radius, ways)
+
+
+MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
+    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam,
+    "wheel": wheel,
+}  # fmt: skip

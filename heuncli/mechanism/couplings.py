@@ -10,13 +10,18 @@ from typing import Literal
 
 import numpy as np
 
+from heuncli.expressions.paths import Path
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import couplings as spec
 
 GROUND = -1
+Place = Array | tuple[float, float, float]
 NOWHERE = (0.0, 0.0, 0.0)
+CouplingKind = Literal[
+    "guide", "dot", "rod", "turn", "mesh", "cam", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls"
+]  # fmt: skip
 
 
 class Coordinate(NamedTuple):
@@ -28,14 +33,31 @@ class Coordinate(NamedTuple):
 
 
 @record
+class CamShape:
+    """What a cam part has besides: the lift over the disc's angle, and what of the follower touches it.
+
+    swings: whether the follower turns, about g through `pivot` of the carrier (3,), or slides along g. radius: of its
+    roller about q, 0: a point. face: the normal of its flat face through q, its axes (3,); None: it has none.
+    """
+
+    lift: Path
+    swings: bool
+    pivot: Array
+    radius: float
+    face: Array | None
+
+
+@record
 class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
-    p, q: points of a and b, body axes (of a mesh p is one of the carrier c); e, g: directions. coordinates: those that
-    its gap is counted by, of a turn one, of a mesh one or two.
+    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates:
+    those that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's.
+    apart: of a mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work,
+    whatever moves, and stands in the axes of c, too. radius: of a wheel.
     """
 
-    kind: Literal["guide", "dot", "rod", "turn", "mesh"]
+    kind: CouplingKind
     a: int
     b: int
     p: Array | tuple[float, float, float] = NOWHERE
@@ -45,6 +67,19 @@ class CouplingPart:
     factor: float = 1.0
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
+    apart: Array | tuple[float, float, float] = NOWHERE
+    cam: CamShape | None = None
+    radius: float = 0.0
+
+    @property
+    def holds_speed(self) -> bool:
+        """Whether it holds a speed and no pose."""
+        return self.kind in ("rolls", "rolls_aside", "ball_rolls")
+
+    @property
+    def turns_its_bodies(self) -> bool:
+        """Whether it holds how its bodies turn, and not only where points of theirs are."""
+        return self.kind not in ("guide", "rod")
 
     @property
     def is_couple(self) -> bool:
@@ -58,12 +93,14 @@ class CouplingPart:
             return ()
         if self.kind == "mesh":
             return ((self.c, np.asarray(self.p)),)
+        if self.kind == "cam":
+            return (self.c, np.asarray(self.p)), (self.b, np.asarray(self.q))
         return (self.a, np.asarray(self.p)), (self.b, np.asarray(self.q))
 
     @property
     def bodies(self) -> tuple[int, ...]:
         """All bodies that it looks at."""
-        return (self.a, self.b, self.c) if self.kind == "mesh" else (self.a, self.b)
+        return (self.a, self.b, self.c) if self.kind in ("mesh", "cam") else (self.a, self.b)
 
 
 @record

@@ -21,7 +21,7 @@ from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machi
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, silhouette, solid_of
 from heuncli.scenery.views import SceneView
-from heuncli.spec.models import Spec, Spring
+from heuncli.spec.models import Bushing, Spec, Spring
 
 PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
 DRIVEN, APPLIED = 3, 3
@@ -261,8 +261,25 @@ def _rod(stood: Stood, look: JointLook, k: int, thin: bool) -> list[Item]:
 def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[Item]:
     """A spring, damped or not, or an actuator."""
     force = stood.spec.forces[look.name]
+    if isinstance(force, Bushing):
+        return _bushing(stood, look, k, thin)
     kind = "damped spring" if isinstance(force, Spring) and force.damping else look.kind
     return _link(stood, look, kind, APPLIED, k, thin)
+
+
+def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:
+    """Two sleeves about its `to` point, with the ground behind them where it stands on that; moved apart: a line."""
+    first, second = (stood.seen(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
+    apart = Strokes(np.array([[first, second]]), APPLIED, THIN)
+    if thin:
+        return [apart]
+    items: list[Item] = [apart]
+    for body, place in ((look.a, first), (look.b, second)):
+        if body == GROUND:
+            other = look.b if body == look.a else look.a
+            below = ground_side(place, stood.seen(other, stood.centers[other], k))
+            items.append(Symbol(*on_paper(place), "foot", below, None, f"{look.name}: on the ground"))
+    return [*items, Symbol(*on_paper(second), "bushing", (1.0, 0.0), APPLIED, f"{look.name}: bushing")]
 
 
 def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin: bool) -> list[Item]:
@@ -284,7 +301,7 @@ def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     looks = {look.name: look for look in stood.machine.joints}
     acting = [(drive.joint, drive.name, "drive", DRIVEN) for drive in stood.spec.drives.values()]
     for name, force in stood.spec.forces.items():
-        if force.type in ("torque", "turn_spring"):
+        if force.type in ("torque", "turn_spring", "motor"):
             acting.append((force.joint, name, force.type, APPLIED))
     for joint_name, name, what, pen in acting:
         look = looks[joint_name]

@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from heuncli.coupled_start.prepared import prepare_coupled
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scaling
 from heuncli.drawing.ticks import short
 from heuncli.mechanism.model import Mechanism
@@ -24,14 +25,14 @@ from heuncli.scenery.machine import Machine, machine_of
 from heuncli.scenery.poses import Poses, poses_at_start, poses_of
 from heuncli.scenery.solids import ROUND
 from heuncli.scenery.views import usual, view_of
-from heuncli.spec.models import Damper, Friction, Spec, Torque, TurnSpring
+from heuncli.spec.models import Damper, Friction, Motor, Spec, Torque, TurnSpring
 from heuncli.study.model.setup import draw
-from heuncli.tree.prepare import PreparedScene, prepare
+from heuncli.tree.prepare import PreparedScene
 
 HEIGHT = 520.0  # pixels of a picture, at most
 STRIP = 0.13  # of the larger side, below what is drawn: for the key of arrows, axes and gravity
 CORNER = 0.05  # of the larger side: the arrows of axes and gravity
-IN_JOINTS = (Damper, Friction, Torque, TurnSpring)
+IN_JOINTS = (Damper, Friction, Motor, Torque, TurnSpring)
 SMOOTH, MANY = 60, 40  # faces about an axis, and of up to how many bodies
 LATER = 7  # the pen of what names later instants
 
@@ -63,7 +64,7 @@ def as_assembled(spec: Spec, view: str | None = None) -> Figure:
     Of one whose rest pose is asked for it is the pose from which that is looked for.
     """
     t = spec.analysis.times[0] if spec.analysis.type == "state" else 0.0
-    prepared = prepare(draw(spec)[0], t)
+    prepared = prepare_coupled(draw(spec)[0], t)
     poses = poses_at_start(prepared.mechanism, prepared.start, t)
     return figure(standing(prepared, spec, poses, view, Units()), Units(), [], NOTHING)
 

@@ -23,9 +23,10 @@ def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
     """The smallest scene that moves as this one does; stages: each step is one.
 
     Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less; nor where
-    couplings look at bodies and coordinates that a smaller scene might be without.
+    couplings look at bodies and coordinates that a smaller scene might be without, or where a point runs along a path.
     """
-    if scene.mechanism.rubbing or scene.mechanism.couplings:
+    mechanism = scene.mechanism
+    if mechanism.rubbing or mechanism.couplings or any(joint.path is not None for joint in mechanism.joints):
         return Reduced((), ())
     steps: list[Reduction] = []
     kept: list[str] = []

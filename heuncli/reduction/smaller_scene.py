@@ -18,11 +18,11 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
+    Bushing,
     Joint,
     Load,
     Mechanism,
     NamedPoint,
-    Bushing,
     PairLoad,
     PointLoad,
 )

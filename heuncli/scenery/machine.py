@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
-from heuncli.spec.models import Actuator, Shape, Spec, Spring
+from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 
 GROUND = "ground"
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
@@ -47,7 +47,7 @@ class JointLook(NamedTuple):
 
 
 class LineLook(NamedTuple):
-    """What acts or holds along a line between two points: a spring, an actuator, a rod, a rope."""
+    """What acts or holds between two points: a spring, an actuator, a rod, a rope, a bushing."""
 
     name: str
     kind: str
@@ -76,7 +76,7 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     lines = tuple(
         LineLook(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
         for name, f in spec.forces.items()
-        if isinstance(f, Spring | Actuator)
+        if isinstance(f, Spring | Actuator | Bushing)
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}

@@ -5,9 +5,13 @@ One class a type; joints and bodies by their names. As in spec/models.py, None i
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
+from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
+
+if TYPE_CHECKING:
+    from heuncli.spec.models import End, Vec  # which knows this module
 
 
 class Term(NamedTuple):
@@ -18,6 +22,11 @@ class Term(NamedTuple):
     factor: float
 
 
+def joints_of(terms: tuple[Term, ...]) -> tuple[str, ...]:
+    """Those whose coordinates are terms."""
+    return tuple(term.joint for term in terms)
+
+
 class Ratio(NamedTuple):
     """A linear relation: the sum of the terms stays what it is at the start, or is `is_`."""
 
@@ -25,5 +34,124 @@ class Ratio(NamedTuple):
     is_: float | None = None
     type: Literal["ratio"] = "ratio"
 
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
 
-Coupling = Ratio  # a union of the classes here
+
+class Wheel(NamedTuple):
+    """A wheel that rolls on a plane.
+
+    wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
+    wheel, in the axes of the body that has the plane. friction: the coefficient from which on it slips, None: never.
+    slides: it does not roll along its track, and only does not slip aside. held: the plane can pull it, too.
+    """
+
+    wheel: End
+    axis: Vec | None
+    radius: float
+    on: End
+    normal: Vec
+    friction: float | None = None
+    slides: bool = False
+    held: bool = False
+    type: Literal["wheel"] = "wheel"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: a wheel counts by no coordinate."""
+        return ()
+
+
+class Gear(NamedTuple):
+    """Two gears, or a gear and a rack, by their joints: those of the terms, whose factors are 1.
+
+    ratio: of the first coordinate by the second; teeth: of both; None where not given. at: the pitch point.
+    """
+
+    terms: tuple[Term, ...]
+    ratio: float | None = None
+    teeth: tuple[float, float] | None = None
+    internal: bool = False
+    at: End | None = None
+    pressure_angle: float = 0.0
+    helix: float = 0.0
+    type: Literal["gear"] = "gear"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
+
+class Screw(NamedTuple):
+    """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
+
+    lead: travel a turn [m], of a left-handed thread below zero.
+    """
+
+    terms: tuple[Term, ...]
+    lead: float
+    type: Literal["screw"] = "screw"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
+
+class Belt(NamedTuple):
+    """A belt over two pulleys of some radii [m]; pretension [N]: of each strand at rest without load; crossed."""
+
+    terms: tuple[Term, ...]
+    radii: tuple[float, float]
+    crossed: bool = False
+    pretension: float = 0.0
+    type: Literal["belt"] = "belt"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
+
+class Differential(NamedTuple):
+    """Two shafts and their carrier, the terms: first - carrier = ratio (second - carrier)."""
+
+    terms: tuple[Term, ...]
+    ratio: float = -1.0
+    type: Literal["differential"] = "differential"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return joints_of(self.terms)
+
+
+class Cam(NamedTuple):
+    """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
+
+    at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
+    normal. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
+    `both`, the follower is guided on both sides.
+    """
+
+    shaft: str
+    follower: str
+    lift: TableFunction
+    at: tuple[float, float, float]
+    contact: Literal["roller", "flat", "point"]
+    radius: float = 0.0
+    normal: tuple[float, float, float] | None = None
+    both: bool = False
+    restitution: float | None = None
+    type: Literal["cam"] = "cam"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The joints that it couples."""
+        return self.shaft, self.follower
+
+
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here

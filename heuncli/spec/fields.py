@@ -15,13 +15,16 @@ from pydantic_core import core_schema
 from heuncli.errors import Finding
 from heuncli.expressions import units as u
 from heuncli.expressions.grammar import NONE
-from heuncli.expressions.programs import Expression
-from heuncli.nearest import afford
+from heuncli.expressions.programs import Expression, TableFunction
+from heuncli.nearest import afford, did_you_mean
 from heuncli.number_range import is_in_range
 from heuncli.records import record, replace
 from heuncli.spec.entries import Before, Entry, OneOf, Tag
 from heuncli.spec.quantity import Scope, condition, in_time, kind_of, number, unit_in
 from heuncli.spec.words import FORMS
+
+A_TABLE = "such as tables: {NAME: {x: [...], y: [...], interpolation: cubic}}"
+HELD = 1  # a table's kind (expressions/programs.py): beyond its ends it stays
 
 
 @record
@@ -178,6 +181,46 @@ class YesOrNo:
         return core_schema.bool_schema(strict=True)
 
 
+def is_a_name(value: Any, parameters: Mapping[str, float | None]) -> bool:
+    """Whether a value is a single word that is not a parameter's name."""
+    return type(value) is str and value.isidentifier() and value not in parameters
+
+
+class Smooth(ReadValue):
+    """The name of a table that is a smooth curve, of values of a dimension over another; or a number, where it may be.
+
+    One with a corner would ask for infinite accelerations where it is passed, and one that bends by jumps for jumps.
+    """
+
+    def __init__(self, dimension: u.Dimension | None, over: u.Dimension, constant: bool) -> None:
+        super().__init__(dimension)
+        self.over, self.constant = over, constant
+
+    def read(self, value: Any, info: Any) -> TableFunction | float:
+        tables = info.context.time.tables
+        if type(value) is str and value in tables:
+            if tables[value] is None:
+                raise Finding("table-curve", f"the table {value} could not be read", "what is wrong with it is told")
+            return self.smooth(tables[value])
+        if self.constant and not is_a_name(value, info.context.load.parameters):
+            return number(value, self.dimension, info.context.load)
+        hint = did_you_mean(value, tables, "tables") if type(value) is str and tables else A_TABLE
+        raise Finding("table-curve", f"expected the name of a table, found {kind_of(value)}", hint)
+
+    def smooth(self, table: TableFunction) -> TableFunction:
+        """The table, if it is smooth and of these dimensions."""
+        if table.interpolation not in ("cubic", "natural"):
+            message = f"the table {table.name} is {table.interpolation}: it does not bend evenly"
+            raise Finding("table-curve", message, "interpolation: cubic")
+        if table.kind == HELD:
+            raise Finding("table-curve", f"the table {table.name} has a corner at its ends", "leave outside: hold out")
+        for given, asked, axis in zip(table.dimensions, (self.over, self.dimension), ("x", "y"), strict=True):
+            if given is not None and asked is not None and given != asked:
+                message = f"the {axis} of table {table.name} is {u.describe(given)}, expected {u.describe(asked)}"
+                raise Finding("dimension", message, f"{axis}_unit: {u.si_unit(asked)}, say")
+        return table
+
+
 class NumbersOrOpen(ReadValue):
     """A number, lists of them, or null for what is open; the numbers as expressions that know their dimension."""
 
@@ -248,6 +291,9 @@ EitherInTime = Annotated[Expression, InTime()]
 Switch = Annotated[bool, YesOrNo()]
 FormatVersion = Annotated[int, Version()]
 Expected = Annotated[Any, NumbersOrOpen()]
+
+Lift = Annotated[Any, Smooth(None, u.ANGLE, constant=False)]
+PathPart = Annotated[Any, Smooth(u.LENGTH, u.LENGTH, constant=True)]
 
 Position = tuple[Length, Length, Length]
 Ratio = Annotated[float, Component(u.NUMBER)]

@@ -51,6 +51,7 @@ from heuncli.spec.fields import (
     OwnDamperTorque,
     OwnSpringForce,
     OwnTurnTorque,
+    PathPart,
     PointOrName,
     Position,
     Pressure,
@@ -70,6 +71,7 @@ from heuncli.spec.fields import (
     VelocityInTime,
 )
 from heuncli.spec.format_couplings import COUPLINGS, CouplingEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.format_shapes import Orientation, ShapeEntry
 from heuncli.spec.words import SEVERAL
 
@@ -240,6 +242,14 @@ class PlaneJoint(AnyJoint):
     normal: Direction
 
 
+class CurveJoint(Bearing):
+    type: Literal["curve"]
+    x: PathPart = 0.0
+    y: PathPart = 0.0
+    z: PathPart = 0.0
+    initial: Sliding | None = None
+
+
 class RodJoint(AnyJoint):
     type: Literal["rod"]
     length: Length | None = None
@@ -248,7 +258,16 @@ class RodJoint(AnyJoint):
 
 
 JointEntry = (
-    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | WeldJoint | LineJoint | PlaneJoint | RodJoint
+    BallJoint
+    | PinJoint
+    | SlideJoint
+    | CylinderJoint
+    | UniversalJoint
+    | WeldJoint
+    | LineJoint
+    | PlaneJoint
+    | RodJoint
+    | CurveJoint
 )
 JOINTS: dict[str, type[JointEntry]] = {
     "ball": BallJoint,
@@ -260,6 +279,7 @@ JOINTS: dict[str, type[JointEntry]] = {
     "line": LineJoint,
     "plane": PlaneJoint,
     "rod": RodJoint,
+    "curve": CurveJoint,
 }
 
 
@@ -617,7 +637,8 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "sections": SectionEntry, "cases": CaseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
+    "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -635,6 +656,7 @@ class Document(NamedTuple):
     impulses: dict[str, ImpulseEntry]
     stops: dict[str, StopEntry]
     couplings: dict[str, CouplingEntry]
+    rolling: dict[str, RollingEntry]
     latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
     cases: dict[str, CaseEntry]

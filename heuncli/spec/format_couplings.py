@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from typing import Literal
 
-from heuncli.spec.entries import Entry
-from heuncli.spec.fields import Number
+from heuncli.spec.entries import Entry, key
+from heuncli.spec.fields import AnEnd, Angle, Anything, Direction, Force, Length, Lift, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -13,8 +14,65 @@ class RatioEntry(Entry):
 
     type: Literal["ratio"]
     of: list[str]
-    factors: list[Number]
+    factors: list[Anything]
+    is_: Anything | None = key("is", None)
 
 
-CouplingEntry = RatioEntry
-COUPLINGS: dict[str, type[CouplingEntry]] = {"ratio": RatioEntry}
+class GearEntry(Entry):
+    """Two gears, or a gear and a rack."""
+
+    type: Literal["gear"]
+    of: list[str]
+    ratio: Anything | None = None
+    teeth: list[Number] | None = None
+    internal: Switch = False
+    at: AnEnd | None = None
+    pressure_angle: Angle = math.radians(20.0)
+    helix: Angle = 0.0
+
+
+class ScrewEntry(Entry):
+    """A thread."""
+
+    type: Literal["screw"]
+    of: list[str]
+    lead: Length
+
+
+class BeltEntry(Entry):
+    """A belt over two pulleys."""
+
+    type: Literal["belt"]
+    of: list[str]
+    radii: list[Length]
+    pretension: Force
+    crossed: Switch = False
+
+
+class DifferentialEntry(Entry):
+    """Two shafts and their carrier."""
+
+    type: Literal["differential"]
+    of: list[str]
+    ratio: Number = -1.0
+
+
+class CamEntry(Entry):
+    """A disc that moves a follower."""
+
+    type: Literal["cam"]
+    of: list[str]
+    lift: Lift
+    at: AnEnd
+    contact: Literal["roller", "flat", "point"]
+    radius: Length | None = None
+    normal: Direction | None = None
+    two_sided: Switch = False
+    restitution: Number | None = None
+
+
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry
+COUPLINGS: dict[str, type[CouplingEntry]] = {
+    "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
+    "cam": CamEntry,
+}  # fmt: skip

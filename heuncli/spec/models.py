@@ -21,6 +21,7 @@ from heuncli.records import record
 from heuncli.spec.couplings import Coupling
 
 if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
     from heuncli.meshes.model import TriangleMesh
 
 Vec = tuple[float, float, float]
@@ -32,6 +33,7 @@ Ref = TypeVar("Ref")  # what a body or joint is called by: its name, or its numb
 V = TypeVar("V")  # a vector
 M = TypeVar("M")  # a matrix
 ZERO: Vec = (0.0, 0.0, 0.0)
+X: Vec = (1.0, 0.0, 0.0)
 Z: Vec = (0.0, 0.0, 1.0)
 RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
@@ -152,7 +154,8 @@ class Joint(Generic[Ref, V]):
     length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
     drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
-    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names.
+    bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
+    of a curve, from the point p on, a's axes.
     """
 
     name: str
@@ -176,6 +179,7 @@ class Joint(Generic[Ref, V]):
     bearing: float | None = None
     p_name: str | None = None
     q_name: str | None = None
+    path: Path | None = None
 
 
 class PointForce(NamedTuple):
@@ -376,6 +380,11 @@ class Stop(Generic[Ref]):
     restitution: float = 0.0
     latch: Latch | None = None
 
+    @property
+    def path(self) -> str:
+        """Where it stands in a spec."""
+        return f"{'stops' if self.latch is None else 'latches'}.{self.name}"
+
 
 class Properties(NamedTuple):
     """Of a section's shape, for stresses: SI values by name.
@@ -421,7 +430,8 @@ class Condition(NamedTuple):
 class ResultCondition(NamedTuple):
     """What is watched for in the results: the number at the path `of` is below the limit, or above it.
 
-    text: as written. ends: whether the motion ends where it becomes true.
+    text: as written. ends: whether the motion ends where it becomes true. why: of one that an entry brings with it, as
+    wheels do, what it then means, in words.
     """
 
     name: str
@@ -430,6 +440,7 @@ class ResultCondition(NamedTuple):
     of: str
     limit: float
     above: bool
+    why: str = ""
 
 
 WatchedCondition = Condition | ResultCondition
@@ -523,6 +534,11 @@ class Spec(NamedTuple):
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
+
+    @property
+    def rolling(self) -> Mapping[str, Coupling]:
+        """The couplings that are wheels, which stand in a block of their own."""
+        return {name: given for name, given in self.couplings.items() if given.type == "wheel"}
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

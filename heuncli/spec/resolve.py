@@ -20,8 +20,9 @@ from heuncli.spec import models as m
 from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import meant
+from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import (
     body_axes,
     drive_of,
@@ -36,6 +37,7 @@ from heuncli.spec.semantics import (
 from heuncli.spec.turns import IDENTITY
 
 if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
     from heuncli.meshes.model import TriangleMesh
 
 DEFAULT_TOLERANCE = 1e-9
@@ -73,7 +75,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling"),
+        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
         latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
@@ -124,7 +126,7 @@ class Resolver:
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
-            self.conditions(analysis),
+            (*self.conditions(analysis), *(conditions_of_wheels(self.document.rolling) if kind == "motion" else ())),
             analysis.tolerance is not None,
         )  # fmt: skip
 
@@ -217,7 +219,14 @@ class Resolver:
             bearing=area(getattr(joint, "bearing", None)),
             p_name=a.name,
             q_name=b.name,
+            path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
         )
+
+    def path(self, joint: f.CurveJoint) -> Path:
+        """What the point of a curve runs along."""
+        from heuncli.expressions.paths import path_of  # with NumPy, which a spec without one has no need of
+
+        return path_of((joint.x, joint.y, joint.z))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
@@ -366,6 +375,9 @@ class Resolver:
             item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
+
+    def wheel(self, name: str, given: RollingEntry) -> Coupling:
+        return wheel_meant(self, given)
 
     def coupling(self, name: str, given: CouplingEntry) -> Coupling:
         return meant(self, name, given)

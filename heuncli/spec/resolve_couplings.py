@@ -5,6 +5,7 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Protocol
 
 from heuncli.expressions.programs import Expression
@@ -13,7 +14,8 @@ from heuncli.spec import couplings as c
 from heuncli.spec import format as whole
 from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
-from heuncli.spec.models import End
+from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.models import End, ResultCondition, Z
 
 
 class Following(Protocol):
@@ -34,10 +36,78 @@ def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
-    """A linear relation of the first coordinates of joints."""
-    kinds = [TYPES[by.document.joints[joint].type] for joint in entry.of]
-    rows = zip(entry.of, kinds, entry.factors, strict=True)
-    return c.Ratio(tuple(c.Term(joint, kind.coordinates[0], factor) for joint, kind, factor in rows))
+    """A linear relation of coordinates."""
+    rows = zip(entry.of, entry.factors, strict=True)
+    return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
 
 
-MEANINGS = {"ratio": ratio}
+def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
+    """The wheel that an entry of `rolling` means; in the plane all are round about z."""
+    axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
+    return c.Wheel(
+        by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
+        entry.normal, entry.friction, entry.slides is not None, entry.held,
+    )  # fmt: skip
+
+
+def conditions_of_wheels(rolling: Mapping[str, RollingEntry]) -> Iterator[ResultCondition]:
+    """What is watched for of wheels: where one lifts off its plane, which ends the motion, and where one slips."""
+    for name, entry in rolling.items():
+        if not entry.held:
+            why = f"the wheel {name} lifts: it would have to be pulled onto its plane"
+            yield below_zero(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
+        if entry.friction is not None:
+            why = f"the wheel {name} slips: it would take more friction than there is"
+            yield below_zero(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
+
+
+def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
+    """The condition that a number of the results is below zero."""
+    return ResultCondition(name, f"{of} below 0", ends, of, 0.0, False, why)
+
+
+def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:
+    """Two gears."""
+    teeth = None if entry.teeth is None else (entry.teeth[0], entry.teeth[1])
+    at = None if entry.at is None else by.end(entry.at)
+    return c.Gear(
+        tuple(term(by, word) for word in entry.of), entry.ratio, teeth, entry.internal, at,
+        entry.pressure_angle, entry.helix,
+    )  # fmt: skip
+
+
+def screw(by: Following, name: str, entry: f.ScrewEntry) -> c.Screw:
+    """A thread: of a cylinder its two coordinates."""
+    if len(entry.of) == 1:
+        joint = entry.of[0]
+        return c.Screw((c.Term(joint, "angle", 1.0), c.Term(joint, "travel", 1.0)), entry.lead)
+    return c.Screw(tuple(term(by, word) for word in entry.of), entry.lead)
+
+
+def belt(by: Following, name: str, entry: f.BeltEntry) -> c.Belt:
+    """A belt over two pulleys."""
+    terms = tuple(term(by, word) for word in entry.of)
+    return c.Belt(terms, (entry.radii[0], entry.radii[1]), entry.crossed, entry.pretension)
+
+
+def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Differential:
+    """Two shafts and their carrier."""
+    return c.Differential(tuple(term(by, word) for word in entry.of), entry.ratio)
+
+
+def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
+    """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
+    joint, _, quantity = word.partition(".")
+    return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
+
+
+def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
+    """A disc and its follower."""
+    shaft, follower = entry.of
+    return c.Cam(
+        shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
+        entry.two_sided, entry.restitution,
+    )  # fmt: skip
+
+
+MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -155,7 +156,7 @@ class _LoadRows:
                     ZERO,
                     p=self.frame.relative(load.a, load.p),
                     q=self.frame.relative(load.b, load.q),
-                    length=tolerances.LARGEST_TURN,
+                    length=math.pi - tolerances.TURNED_OVER,
                     frame=load.frame.ravel(),
                     to_frame=load.to_frame.ravel(),
                     stiffnesses=elastic.stiffness,

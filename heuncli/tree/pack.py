@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.paths import Path
 from heuncli.expressions.programs import Pack
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.kernel.choose import scene as kernel
@@ -18,10 +19,11 @@ from heuncli.mechanism.model import (
     Mechanism,
     Stop,
 )
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows, to_quaternion
 from heuncli.tree.closure_paths import places_of
-from heuncli.tree.coupled_rows import ends, part_row, sum_row
+from heuncli.tree.coupled_rows import as_assembled, ends, part_row, sum_row, with_lift
 from heuncli.tree.flat import about_z, in_plane, moves_in_plane
 from heuncli.tree.frame import LayoutFrame, frame_of
 from heuncli.tree.islands import with_islands
@@ -36,6 +38,7 @@ from heuncli.tree.rows import (
     CounterRow,
     FreedomRow,
     GroupRow,
+    PieceRow,
     Program,
     Vector,
     table_of,
@@ -101,7 +104,7 @@ def framed(
 
 def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
     """The joints that are not to be cut."""
-    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named}
+    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named or j.path is not None}
     kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
@@ -134,6 +137,8 @@ class _Builder:
         self.reference = np.array([self._reference(h) for h in spanning.hangs]).reshape(-1, 3)
         self.body_rows: list[BodyRow] = []
         self.freedom_rows: list[FreedomRow] = []
+        self.pieces: list[PieceRow] = []
+        self.coordinates: dict[tuple[int, str], float] = {}  # at the start, of the tree's joints
         self.freedoms: list[Freedom] = []
         self.y: list[float] = []
         self.weights: list[float] = []
@@ -210,11 +215,29 @@ class _Builder:
                 own.append(1.0 / self.size if kind == kernel.SHIFT else 1.0)
             answer = self.answer_count + 3 * ball + k
             driven, program = int(program is not None), program or NO_PROGRAM
-            self.freedom_rows.append(FreedomRow(kind, *places, driven, answer, i, program, direction))
+            row = FreedomRow(kind, *places, driven, answer, i, program, direction)
+            self.freedom_rows.append(self._on_path(h, quantity, row))
             self.freedoms.append(Freedom(h.joint, quantity, *places))
+            self.coordinates[h.joint, quantity] = x
         self.y += coordinates + rates
         self.weights += [1.0] * (4 * ball) + own + weights + own
         return GroupRow(begin, rates_at, len(self.y))
+
+    def _on_path(self, h: Hang, quantity: str, row: FreedomRow) -> FreedomRow:
+        """The freedom of a point that runs along a path, whose pieces join the table; any other as it is."""
+        path = self.mechanism.joints[h.joint].path if h.joint >= 0 else None
+        if path is None or quantity != "travel":
+            return row
+        reach, slope, bend = path.greatest
+        return replace(row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
+                       bend=bend)  # fmt: skip
+
+    def _put_path(self, path: Path) -> int:
+        """Add the pieces of a path; which of all is the first."""
+        first = len(self.pieces)
+        self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
+        self.pieces.append(PieceRow(path.last, *np.zeros((4, 3))))
+        return first
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:
         drive = self.mechanism.joints[h.joint].drive if h.joint >= 0 else None
@@ -327,8 +350,13 @@ class _Builder:
                 if row.tension_only:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
-                self.closure_rows.append(sum_row(row, len(self.part_rows), self.size))
-                self.part_rows += [part_row(part, self.in_tree, self.relative, freedoms) for part in row.parts]
+                length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
+                self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
+                for part in row.parts:
+                    made = part_row(part, self.in_tree, self.relative, freedoms)
+                    self.part_rows.append(with_lift(made, part, len(self.pieces), self.relative))
+                    if part.cam is not None:
+                        self._put_path(part.cam.lift)
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
 
@@ -414,6 +442,7 @@ class _Builder:
             "bodies": table_of(kernel.Body, self.body_rows),
             "freedoms": table_of(kernel.Freedom, self.freedom_rows),
             "closures": table_of(kernel.Closure, self.closure_rows, places),
+            "pieces": table_of(kernel.Piece, self.pieces),
             "parts": table_of(kernel.Closure, self.part_rows),
             "counters": table_of(kernel.Counter, self._counter_rows()),
             "contacts": table_of(kernel.Contact, self.one_sided),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 
 import numpy as np
@@ -42,14 +43,24 @@ class PreparedScene:
         return sum(float(np.sum(spin.axes[:, 2] ** 2)) >= tolerances.ALONG_SQUARED for spin in self.idle)
 
 
-def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> PreparedScene:
-    """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop."""
+def prepare(
+    mechanism: Mechanism,
+    t0: float = 0.0,
+    stages: Stages = ANEW,
+    fit: Callable[[PreparedScene], PreparedScene] | None = None,
+) -> PreparedScene:
+    """Assemble at t0 and lay out. Raises SolveError where the scene does not close, or starts beyond a stop.
+
+    fit: makes of a scene that its joints close one that meets what else its start has to.
+    """
     start = assemble(mechanism, t0, stages)
     if any(j.drive is not None and j.drive.adds_to_start for j in mechanism.joints):
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
     scene = arranged(mechanism, start, stages=stages)
+    if fit is not None:
+        scene = fit(scene)
     if mechanism.stops:
         from heuncli.tree.limits import at_rest_on_stops, start_within_limits  # where something strikes
 
@@ -57,7 +68,8 @@ def prepare(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> Pre
         resting = at_rest_on_stops(mechanism, scene.layout, scene.start)
         if resting is not None:
             with suppress(SolveError):  # what is held makes it strike
-                scene = arranged(mechanism, assemble(resting, t0))
+                at_rest = arranged(mechanism, assemble(resting, t0))
+                scene = at_rest if fit is None else fit(at_rest)
     return scene
 
 

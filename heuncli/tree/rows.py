@@ -55,6 +55,23 @@ class FreedomRow:
     body: int
     program: Program
     direction: Array
+    path: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    reach: float = 0.0
+    slope: float = 0.0
+    bend: float = 0.0
+
+
+@record
+class PieceRow:
+    """A piece of a path."""
+
+    begin: float
+    c0: Array
+    c1: Array
+    c2: Array
+    c3: Array
 
 
 @record
@@ -115,6 +132,14 @@ class ClosureRow:
     ratio: float = 0.0
     freedom_b: int = 0
     ratio_b: float = 0.0
+    lift: int = 0
+    pieces: int = 0
+    period: float = 0.0
+    swings: int = 0
+    faced: int = 0
+    radius: float = 0.0
+    pivot: Vector = ZERO
+    h: Vector = ZERO
 
 
 @record
@@ -207,6 +232,7 @@ Row = (
     | ClosurePlaces
     | ContactRow
     | CounterRow
+    | PieceRow
     | VariableRow
     | WatchRow
     | GroupRow

@@ -146,11 +146,18 @@ def _leaves(joint: Joint, to: bool, null: Array) -> bool:
 
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
+    if joint.path is not None:
+        return Problem(
+            "over-driven",
+            f"joints.{joint.name} runs along a path, and every other joint of a closed chain through it does so, too, or "
+            "is driven, limited or named",
+            hint="a body on two paths: a second body on the second, with a ball or pin between the two",
+        )
     what = "is driven" if joint.drive else "is named in an expression"
     if JOINTS[joint.kind].coordinates == ():
         what = "has a turn_spring"
     if any(stop.joint == k for stop in mechanism.stops):
-        what = "is limited by a stop"
+        what = "is limited by a stop, or held by a latch"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",

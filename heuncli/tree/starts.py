@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.paths import Path
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.records import record
@@ -56,6 +57,8 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     if not kind.turns and "travel" not in kind.coordinates:
         return JointStart(R, 0.0, 0.0, 0.0, 0.0)
     n = joint.axis
+    if joint.path is not None:
+        return joint_start_on_path(joint, joint.path, start, R)
     D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
     rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
     v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Rb @ joint.q + xb - xa)
@@ -70,6 +73,22 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
         return JointStart(about(n, -near) @ R, near, rate, travel, speed)
     near = near if near is not None else middle_of_limits(mechanism, joint)
     return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+
+
+def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
+    """Where the point of a path stands along it: at the nearest place, on a closed one in the turn that is held."""
+    xa, Ra, va, wa = pose(start, joint.a)
+    xb, Rb, vb, wb = pose(start, joint.b)
+    D = xb + Rb @ joint.q - xa
+    travel = float(path.nearest(Ra.T @ D - joint.p))
+    if path.period and joint.travel is not None:
+        travel += path.period * round((joint.travel - travel) / path.period)
+    elif joint.travel is not None and math.isclose(travel, joint.travel, abs_tol=tolerances.SAME_VALUE):
+        travel = joint.travel
+    slope = path.at(travel)[1]
+    v = Ra.T @ (vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, D))
+    turn = float((Ra @ Z) @ (wb - wa))
+    return JointStart(R, 0.0, turn, travel, float(slope @ v) / float(slope @ slope))
 
 
 def first_angle(joint: Joint, R: Array) -> float:

@@ -105,6 +105,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
         if section.properties is not None:
             yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+    for name, wheel in draft.document.rolling.items():
+        yield from positive(("rolling", name), wheel, "radius")
     yield from positive(("analysis",), draft.document.analysis, "duration", "step")
 
 
@@ -270,6 +272,10 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
         for i, shape in enumerate(body.shapes or []):
             if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
+    for name, load in draft.document.forces.items():
+        for key in ("orientation", "to_orientation") if isinstance(load, f.BushingEntry) else ():
+            if getattr(load, key) is not None:
+                yield ("forces", name, key), getattr(load, key)
 
 
 @rule("piece-form")

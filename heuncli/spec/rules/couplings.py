@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+
+COUNTS = {"gear": (2,), "belt": (2,), "screw": (1, 2), "differential": (3,)}  # joints of a type
 
 
 @rule("coupled-joint")
@@ -14,8 +18,9 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        for i, joint in enumerate(coupling.of):
+        for i, word in enumerate(coupling.of):
             path = ("couplings", name, "of", i)
+            joint, _, quantity = word.partition(".")
             if joint not in joints:
                 yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
                 continue
@@ -23,14 +28,70 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
             if kind is not None and not kind.coordinates:
                 able = named([kind for kind in TYPES.values() if kind.coordinates], "and")
                 yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
-            if joint in coupling.of[:i]:
-                yield Violation(path, f"{joint} is coupled to itself", "name another joint")
+            elif kind is not None and quantity and quantity not in kind.coordinates:
+                yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
+            if word in coupling.of[:i]:
+                yield Violation(path, f"{word} is coupled to itself", "name another joint")
+
+
+@rule("coupling-count")
+def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
+    """Every type is of so many joints."""
+    for name, coupling in draft.document.couplings.items():
+        counts = COUNTS.get(coupling.type)
+        if counts is not None and len(coupling.of) not in counts:
+            some = " or ".join(map(str, counts))
+            message = f"{len(coupling.of)} joints are named"
+            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
+
+
+@rule("gear-ratio")
+def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
+    """Gears have a ratio, or teeth, none of them zero, and angles that teeth have."""
+    for name, gear in draft.document.couplings.items():
+        if not isinstance(gear, GearEntry):
+            continue
+        path = ("couplings", name)
+        if gear.ratio is not None and gear.teeth is not None:
+            yield Violation((*path, "teeth"), "ratio and teeth are both given", "keep one of them", key=True)
+        if gear.ratio == 0.0:
+            yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
+        if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
+            hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
+            yield Violation((*path, "teeth"), f"teeth {gear.teeth} are no pair of gears", hint)
+        if gear.internal and gear.teeth is None and gear.ratio is None:
+            yield Violation(
+                (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
+            )
+        for key, most in (("pressure_angle", 60.0), ("helix", 80.0)):
+            angle = math.degrees(getattr(gear, key))
+            if not (0.0 if key == "pressure_angle" else -most) <= angle <= most:
+                yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
+
+
+@rule("coupling-sizes")
+def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
+    """Leads that are not zero, radii above zero, no pretension below it; differentials that move all three shafts."""
+    for name, own in draft.document.couplings.items():
+        path = ("couplings", name)
+        if isinstance(own, ScrewEntry) and own.lead == 0.0:
+            yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
+        if isinstance(own, BeltEntry):
+            if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
+                yield Violation((*path, "radii"), f"{own.radii} are no radii of two pulleys", "two lengths above zero")
+            if own.pretension < 0.0:
+                yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
+        if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):
+            message = f"a ratio of {own.ratio:g} leaves one of the three alone"
+            yield Violation((*path, "ratio"), message, "of equal wheels it is -1; with type: ratio any relation goes")
 
 
 @rule("coupling-terms")
 def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
     """A linear relation has a factor for each joint, none of them zero, and two joints at least."""
     for name, coupling in draft.document.couplings.items():
+        if not isinstance(coupling, RatioEntry):
+            continue
         if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
             message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
             yield Violation(("couplings", name, "factors"), message, "two joints at least, and a factor for each")

@@ -116,8 +116,8 @@ def load_form(draft: DraftDocument) -> Iterator[Violation]:
             message = f"a {load.type} by {law[0]} and by {beside[0]}"
             yield Violation((*path, beside[0]), message, f"put all of it into {law[0]}, or leave that out", key=True)
         if isinstance(load, f.BushingEntry) and all(
-            getattr(load, key) is None for key in ("stiffness", "turning", "damping", "turning_damping", "preload",
-                                                   "turning_preload")
+            getattr(load, key) is None
+            for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
             yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
         if isinstance(load, f.MotorEntry) and load.ratio == 0.0:

@@ -17,7 +17,7 @@ def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, stat
             if load.joint.name in shown["joints"]:  # of single joints these alone are told
                 shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
         for coupled in shares.couplings:
-            carried = {coupled.carries: coupled.multipliers[0]}
+            carried = {coupled.carries: coupled.carried}
             shown["couplings"][coupled.coupling.name]["shares"] = shares.by_name(carried)
     if "foundation" in shown:
         for keys, own in foundation_shares(mechanism, states, shares, about).items():

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.coupled_start.prepared import prepare_coupled
 from heuncli.errors import SolveError
 from heuncli.integration.determined_motion import NOT_DETERMINED, determined
 from heuncli.integration.integrated_scene import smaller
@@ -28,7 +29,7 @@ from heuncli.stages import ANEW, Stages
 from heuncli.study.model.method_choice import first_choice, why
 from heuncli.study.model.model_note import attitudes, model_note, reductions, rested
 from heuncli.study.model.selection import EVERYTHING, Selection
-from heuncli.tree.prepare import PreparedScene, prepare
+from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:  # loaded where a scene has sections
     from heuncli.kinetostatics.cuts import Cuts
@@ -97,7 +98,11 @@ def set_up(
     if spec.analysis.type == "rest":
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
-    prepared = prepare(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
+    prepared = prepare_coupled(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
+    if any(coupling.given.type == "cam" for coupling in prepared.mechanism.couplings):
+        from heuncli.tree.cam_flanks import require_flanks  # few scenes have them
+
+        require_flanks(prepared.layout)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
 

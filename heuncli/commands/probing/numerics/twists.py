@@ -73,7 +73,9 @@ def twists(layout: Layout, at: Recovered) -> Twists:
         for j in range(int(body["first_freedom"]), int(body["end_freedom"])):
             kind, own = table["kind"][j], int(table["answer_at"][j])
             on = k if kind == kernel.TURN_IN_BODY else parent
-            along = directions[j] if on < 0 else R[:, on] @ directions[j]
+            path = layout.mechanism.joints[joint].path if (joint := layout.freedoms[j].joint) >= 0 else None
+            fixed = directions[j] if path is None or kind != kernel.SHIFT else path.at(at.freedoms["q"][:, j])[1]
+            along = fixed if on < 0 else (R[:, on] @ fixed[..., None])[..., 0]
             (shift if kind == kernel.SHIFT else turn)[:, k, own] += along
     order = [hang.body for hang in layout.spanning.hangs]
     bodies = [layout.mechanism.bodies[i] for i in order]

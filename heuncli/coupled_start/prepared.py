@@ -1,0 +1,16 @@
+"""A mechanism made ready to run with its couplings met: what tree/prepare.py does, which knows none."""
+
+from __future__ import annotations
+
+from heuncli.mechanism.model import Mechanism
+from heuncli.stages import ANEW, Stages
+from heuncli.tree.prepare import PreparedScene, prepare
+
+
+def prepare_coupled(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW) -> PreparedScene:
+    """Assemble at t0 and lay out. Raises SolveError as `prepare`, and where couplings contradict what is held."""
+    if not mechanism.couplings:
+        return prepare(mechanism, t0, stages)
+    from heuncli.coupled_start.start import asked_of, fitted  # few scenes have couplings
+
+    return prepare(mechanism, t0, stages, lambda scene: fitted(scene, t0, asked_of(scene)))

@@ -1,0 +1,175 @@
+"""Paths in space: a point over a parameter, piece by piece a cubic in each coordinate.
+
+    r(s) = c0 + c1 h + c2 h² + c3 h³,   h = s - s_k        in the piece from s_k on, each c a vector
+The tables of the coordinates may have knots of their own: a piece of the path ends where one of any of them does.
+Beyond open ends the last piece goes on, and a closed path round again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.expressions.programs import TableFunction
+from heuncli.records import record, replace
+from heuncli.results import Array
+
+PERIODIC = 2  # a table's kind (expressions/programs.py)
+LOOKS = 16  # places in a piece at which a path is looked at
+NEWTON = 32  # steps to the nearest place
+TRIED = 4  # of the places looked at, those from which the nearest is sought
+
+
+@record
+class Path:
+    """A path: knots (n + 1,), coefficients (n, 4, 3) [m]; period: of the parameter where it is closed, else 0."""
+
+    knots: Array
+    coefficients: Array
+    period: float
+
+    @property
+    def first(self) -> float:
+        """Where the parameter begins."""
+        return float(self.knots[0])
+
+    @property
+    def last(self) -> float:
+        """Where it ends."""
+        return float(self.knots[-1])
+
+    def turned(self, R: Array) -> Path:
+        """The path seen in other axes: R takes components in its own to those."""
+        return replace(self, coefficients=self.coefficients @ R.T)
+
+    def at(self, s: Array | float) -> tuple[Array, Array, Array]:
+        """Place, slope and bend r, r', r'' at parameters of any shape, (..., 3) each."""
+        s = np.asarray(s, dtype=float)
+        inside = self.first + np.mod(s - self.first, self.period) if self.period else s
+        k = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, len(self.knots) - 2)
+        h = (inside - self.knots[k])[..., None]
+        c0, c1, c2, c3 = np.moveaxis(self.coefficients[k], -2, 0)
+        return ((c3 * h + c2) * h + c1) * h + c0, (3.0 * c3 * h + 2.0 * c2) * h + c1, 6.0 * c3 * h + 2.0 * c2
+
+    @property
+    def looked_at(self) -> Array:
+        """Parameters that show the path, a number in each piece, (m,)."""
+        steps = np.arange(LOOKS) / LOOKS
+        inner = (self.knots[:-1, None] + np.diff(self.knots)[:, None] * steps).ravel()
+        return np.append(inner, self.last)
+
+    def nearest(self, points: Array) -> Array:
+        """The parameter of the path's place nearest to each point, (...); points (..., 3), in the path's axes.
+
+        By Newton's method on (r - x) . r' = 0 from each of the nearest places looked at, for one of another part of the
+        path may lie nearer than those about the place that is sought.
+        """
+        s = self.looked_at
+        low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])
+        if self.period:
+            low[0], high[-1] = s[0] - (s[-1] - s[-2]), s[-1] + (s[1] - s[0])
+        away = np.sum(np.square(points[..., None, :] - self.at(s)[0]), axis=-1)
+        beside = np.concatenate([away[..., :1] + 1.0, away, away[..., -1:] + 1.0], axis=-1)
+        least = (away <= beside[..., :-2]) & (away <= beside[..., 2:])
+        begun = np.argsort(np.where(least, away, np.inf), axis=-1)[..., :TRIED]
+        found = self._descended(points[..., None, :], s[begun], low[begun], high[begun])
+        left = np.sum(np.square(points[..., None, :] - self.at(found)[0]), axis=-1)
+        return np.take_along_axis(found, np.argmin(left, axis=-1)[..., None], axis=-1)[..., 0]
+
+    def _descended(self, points: Array, begun: Array, low: Array, high: Array) -> Array:
+        """Where Newton's method leads from parameters, held between others."""
+        found = begun
+        for _ in range(NEWTON):
+            place, slope, bend = self.at(found)
+            off = place - points
+            square = np.sum(slope * slope, axis=-1)
+            curved = square + np.sum(off * bend, axis=-1)
+            to = np.clip(found - np.sum(off * slope, axis=-1) / np.where(curved > 0.0, curved, square), low, high)
+            if np.all(np.abs(to - found) <= np.finfo(float).eps * (abs(self.first) + abs(self.last))):
+                return to
+            found = to
+        return found
+
+    @property
+    def greatest(self) -> tuple[float, float, float]:
+        """Bounds of |r|, |r'| and |r''| over all of it: no coordinate of a cubic exceeds its Bernstein coefficients."""
+        h = np.diff(self.knots)[:, None]
+        c0, c1, c2, c3 = np.moveaxis(self.coefficients, 1, 0)
+        a, b, c = c1 * h, c2 * h * h, c3 * h * h * h
+        places = np.stack([c0, c0 + a / 3.0, c0 + (2.0 * a + b) / 3.0, c0 + a + b + c])
+        slopes = np.stack([a, a + b, a + 2.0 * b + 3.0 * c]) / h
+        bends = np.stack([2.0 * b, 2.0 * b + 6.0 * c]) / (h * h)
+        r, slope, bend = (float(np.sqrt(np.max(np.sum(x * x, axis=-1)))) for x in (places, slopes, bends))
+        return r, slope, bend
+
+
+def path_of(parts: Sequence[TableFunction | float]) -> Path:
+    """The path whose three coordinates are tables, or numbers that stay; one at least is a table."""
+    tables = [part for part in parts if isinstance(part, TableFunction)]
+    open_ones = [table for table in tables if table.kind != PERIODIC] or tables[:1]
+    first, last = (f(knots_of(table)[i] for table in open_ones) for f, i in ((max, 0), (min, -1)))
+    cuts = [knot for table in tables for knot in repeated(table, first, last)]
+    knots = merged(np.unique([first, last, *cuts]), last - first)
+    middles = 0.5 * (knots[1:] + knots[:-1])
+    columns = [shifted(part, knots[:-1], middles) for part in parts]
+    closed = all(table.kind == PERIODIC for table in tables)
+    return Path(knots, np.stack(columns, axis=-1), last - first if closed else 0.0)
+
+
+def knots_of(table: TableFunction) -> Array:
+    """The points of the parameter at which a table's pieces begin, and its end."""
+    return np.frombuffer(table.numbers)[1 : table.pieces + 2]
+
+
+def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]:
+    """The knots of a table between two parameters, of all its turns where it is periodic."""
+    knots, period = knots_of(table), table.numbers[0]
+    turns = range(1)
+    if table.kind == PERIODIC:
+        turns = range(int(np.floor((first - knots[0]) / period)), int(np.floor((last - knots[0]) / period)) + 1)
+    for turn in turns:
+        own = knots + turn * period
+        yield from own[(own > first) & (own < last)].tolist()
+
+
+def merged(knots: Array, span: float) -> Array:
+    """Knots without those that only rounding tells apart; the ends stay."""
+    apart = np.diff(knots) > tolerances.SAME_VALUE * span
+    kept = knots[np.append(True, apart)]
+    kept[-1] = knots[-1]
+    return kept
+
+
+def shifted(part: TableFunction | float, begins: Array, middles: Array) -> Array:
+    """The cubics (n, 4) of a coordinate in pieces from `begins` on, each a part of one of its own round the middle."""
+    if not isinstance(part, TableFunction):
+        return np.array([[part, 0.0, 0.0, 0.0]] * len(begins))
+    numbers = np.frombuffer(part.numbers)
+    knots = knots_of(part)
+    own = numbers[part.pieces + 2 :].reshape(-1, 4)
+    turns = np.floor((middles - knots[0]) / numbers[0]) * numbers[0] if part.kind == PERIODIC else 0.0
+    k = np.clip(np.searchsorted(knots, middles - turns, side="right") - 1, 0, part.pieces - 1)
+    h = begins - turns - knots[k]
+    c0, c1, c2, c3 = own[k].T
+    return np.stack(
+        [((c3 * h + c2) * h + c1) * h + c0, (3.0 * c3 * h + 2.0 * c2) * h + c1, 3.0 * c3 * h + c2, c3], axis=-1
+    )
+
+
+def cusp(path: Path) -> float | None:
+    """The parameter at which the path stands still, so that it has no direction there; None where it has one all along.
+
+    The square of the slope is of degree 4 in a piece: where it nearly vanishes it is looked at closely.
+    """
+    s = path.looked_at
+    for _ in range(3):
+        slope = path.at(s)[1]
+        size = np.sqrt(np.sum(slope * slope, axis=-1))
+        i = int(np.argmin(size))
+        if size[i] < tolerances.STANDS_STILL * path.greatest[1]:
+            return float(s[i])
+        low, high = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)]
+        s = np.linspace(low, high, 4 * LOOKS + 1)
+    return None
