@@ -12,7 +12,8 @@ from tests.oracle.turns import about, attitude, random_rotation
 from tests.shared.scenes import near, solved
 
 ENGINE = {
-    "mass": 4.0, "center": [0.1, 0.02, 0.05], "inertia": [0.12, 0.15, 0.09], "points": {"c": [0, 0, 0], "d": [0.2, 0, 0]},
+    "mass": 4.0, "center": [0.1, 0.02, 0.05], "inertia": [0.12, 0.15, 0.09],
+    "points": {"c": [0, 0, 0], "d": [0.2, 0, 0]},
     "position": [0.01, 0.02, 0], "orientation": {"matrix": about(np.array([0.6, 0.0, 0.8]), 0.7).tolist()},
 }  # fmt: skip
 ROTOR = {
@@ -50,7 +51,9 @@ def test_energy(more: dict[str, Any]) -> None:
     found = solved(two_bodies(**more))
     assert float(np.linalg.norm(found.forces["mount"]["turn"], axis=1).max()) > 1.0
     e = found.energy
-    near(e["kinetic"] + e["potential"] - e["work"], e["kinetic"][0] + e["potential"][0], float(e["kinetic"].max()), 1e-10)
+    near(
+        e["kinetic"] + e["potential"] - e["work"], e["kinetic"][0] + e["potential"][0], float(e["kinetic"].max()), 1e-10
+    )
     if "damping" in more:
         assert (np.diff(e["work"]) < 0.0).all()
     else:
@@ -65,7 +68,13 @@ def test_alike_in_all_directions_it_has_no_axes() -> None:
     other = two_bodies(stiffness=300.0, turning=5.0)
     other["forces"]["mount"] |= {"from": "engine.c", "to": "ground.O", "orientation": {"axis": [1, 2, 0], "angle": 1.0}}
     apart = two_bodies(stiffness=0.0, turning=5.0)
-    apart["forces"]["spring"] = {"type": "spring", "from": "engine.c", "to": "ground.O", "stiffness": 300.0, "length": 0}
+    apart["forces"]["spring"] = {
+        "type": "spring",
+        "from": "engine.c",
+        "to": "ground.O",
+        "stiffness": 300.0,
+        "length": 0,
+    }
     for scene in (other, apart):
         found = solved(scene)
         for name in ("engine", "rotor"):
@@ -140,7 +149,9 @@ def test_smaller_scenes() -> None:
                 near(found.forces[name][quantity], wanted.forces[name][quantity], 100.0, 1e-8)
 
 
-@pytest.mark.parametrize("mount", [{"turning_preload": [0.3, 0, 0]}, {"orientation": {"axis": [1, 0, 0], "angle": 0.3}}])
+@pytest.mark.parametrize(
+    "mount", [{"turning_preload": [0.3, 0, 0]}, {"orientation": {"axis": [1, 0, 0], "angle": 0.3}}]
+)
 def test_what_leaves_the_plane_is_no_planar_scene(mount: dict[str, Any]) -> None:
     """A moment across the normal, or axes askew to it, turn a free body out of the plane."""
     flat = FLAT.replace("SPACE", "space: auto")

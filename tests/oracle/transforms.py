@@ -156,8 +156,12 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
             "distributed": {"vector": force / length, "to_vector": force / length},
             "turn_spring": {"stiffness": moment, "damping": moment * time},
             "bushing": {
-                "stiffness": mass / time**2, "damping": mass / time, "preload": force,
-                "turning": moment, "turning_damping": moment * time, "turning_preload": moment,
+                "stiffness": mass / time**2,
+                "damping": mass / time,
+                "preload": force,
+                "turning": moment,
+                "turning_damping": moment * time,
+                "turning_preload": moment,
             },
             "friction": {"torque": moment, "force": force, "speed": speed, "radius": length, "length": length},
         }[spec["type"]]

@@ -53,7 +53,9 @@ def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     if not isinstance(load, Bushing):
         return {}
     parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
-    return {(name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)}
+    return {
+        (name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)
+    }
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:
