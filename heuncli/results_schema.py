@@ -190,6 +190,17 @@ ROWS: tuple[Quantity, ...] = (
         "above zero where it presses", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N")),
     *at("couplings.COUPLING", "of a cam, the angle between that normal and the way of the follower",
         scalar("pressure_angle", "rad")),
+    *at("couplings.COUPLING", "of gears all of the tooth force; of a wheel what the plane presses it with",
+        scalar("normal", "N")),
+    *at("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
+        scalar("radial", "N"), scalar("axial", "N")),
+    *at("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
+    *at("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",
+        scalar("tight", "N"), scalar("slack", "N")),
+    *at("couplings.COUPLING", "of a wheel: what keeps it from slipping, in all, along its track and along its axle's "
+        "shadow on the plane, ON the wheel", scalar("friction", "N"), scalar("along", "N"), scalar("aside", "N")),
+    *at("couplings.COUPLING", "of a wheel with a coefficient of friction, coefficient · normal − friction: it slips "
+        "where that is below zero", scalar("grip", "N")),
     *at("couplings.COUPLING.on.END", "what it exerts ON a body, or the ground, that it loads: the moment about `point`",
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),

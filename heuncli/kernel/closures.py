@@ -33,6 +33,7 @@ if not cython.compiled:
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
+    from heuncli.kernel.rolling import rolling_row
     from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import answered, direction_of, push
@@ -92,8 +93,10 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         turn_row(scene, row)
     elif row.kind == ROD:
         rod_row(scene, row)
-    else:
+    elif row.kind == MESH:
         mesh_part(scene, row)
+    else:
+        rolling_row(scene, row)
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -21,6 +21,7 @@ BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
 ALONG_LINE = 3  # of a load: its length; before that the components of its strain
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
+TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -156,6 +157,8 @@ class Closure(Record):
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
+    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: a wheel's on a plane (kernel/rolling.py); those that roll
+    hold a speed, and have no gap.
     """
 
     kind: int
@@ -484,6 +487,34 @@ class RowTangent(Value):
     m: Vec3
     rate: float
     acceleration: float
+
+
+class Moving(Value):
+    """A vector and its rate."""
+
+    x: Vec3
+    rate: Vec3
+
+
+class MovingTangent(Value):
+    """A vector with its rate, and what both change by along a direction of the state."""
+
+    own: Moving
+    change: Moving
+
+
+class WheelContact(Value):
+    """Where a wheel touches its plane, and the direction that a row of it looks along."""
+
+    c: Moving
+    e: Moving
+
+
+class WheelTangent(Value):
+    """The same with what it changes by along a direction of the state."""
+
+    c: MovingTangent
+    e: MovingTangent
 
 
 class Cam(Value):

@@ -23,6 +23,7 @@ if not cython.compiled:
         GUIDE,
         MESH,
         SUM,
+        TOUCHES,
         TURN,
         Closure,
         LoadTangent,
@@ -35,6 +36,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tree import direction_of
 
 
@@ -99,6 +101,8 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return mesh_along(scene, row)
     if row.kind == CAM:
         return cam_along(scene, row)
+    if row.kind >= TOUCHES:
+        return rolling_along(scene, row)
     Q: Vec3 = point_along(scene, row.b, row.q).x
     if row.kind == GUIDE:
         return guide_along(scene, row, Q)

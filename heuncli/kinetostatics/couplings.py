@@ -11,9 +11,9 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from heuncli.kinetostatics.actions import Action, ActionEnd
+from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -24,7 +24,7 @@ from heuncli.tree.layout import Layout
 class PartLoad:
     """Force and moment of one part ON its body b, the opposite ON a, about the place (n_t, 3).
 
-    f, m (n_t, 3): those for a multiplier of 1.
+    f, m (n_t, 3): those for a multiplier of 1. pushed (n_t, 3): the force ON b for one of 1 or of -1; None: none.
     """
 
     part: CouplingPart
@@ -32,11 +32,21 @@ class PartLoad:
     f: Array
     m: Array
     multiplier: Array
+    pushed: Array | None = None
 
     @property
     def force(self) -> Array:
         """Force ON b."""
         found: Array = self.multiplier[..., None] * self.f
+        return found if self.pushed is None else found + self.push
+
+    @property
+    def push(self) -> Array:
+        """The part of the force ON b that has the same direction whatever the sign of all multipliers together."""
+        if self.pushed is None:
+            return np.zeros_like(self.multiplier[..., None] * self.f)
+        whole = self.multiplier.reshape(-1, len(self.f)).sum(axis=0)
+        found: Array = (np.where(whole < 0.0, -1.0, 1.0) * self.multiplier)[..., None] * self.pushed
         return found
 
     @property
@@ -93,6 +103,11 @@ class CouplingLoads:
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
 
+    def parts_of_rows(self) -> Iterator[tuple[int, PartLoad]]:
+        """The parts, each with the closure row that it belongs to."""
+        owners = (r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts)
+        return zip(owners, self.parts, strict=True)
+
     def plus(self, more: Array | None) -> CouplingLoads:
         """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
         if more is None:
@@ -105,7 +120,7 @@ class CouplingLoads:
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in self.parts:
+        for part in (part for part in self.parts if part.part.a != part.part.b):
             for body, sign in ((part.part.b, 1.0), (part.part.a, -1.0)):
                 at, force, moment = found.get(body, (part.place, np.zeros_like(part.force), np.zeros_like(part.moment)))
                 moment = moment + sign * (part.moment + cross_rows(part.place - at, part.force))
@@ -113,7 +128,9 @@ class CouplingLoads:
         return found
 
 
-def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | None = None) -> list[CouplingLoads]:
+def coupling_loads(
+    layout: Layout, recovered: Answers, states: BodyStates, only: Collection[str] | None = None
+) -> list[CouplingLoads]:
     """The loads of all couplings, in the order of the spec; only: of those of some names."""
     mechanism, found = layout.mechanism, []
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
@@ -123,19 +140,25 @@ def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | N
         multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
         parts: list[PartLoad] = []
         for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
-            parts += _part_loads(layout, r, row.parts, multiplier, recovered)
+            parts += _part_loads(layout, r, row.parts, multiplier, recovered, states)
         found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
     return found
 
 
 def _part_loads(
-    layout: Layout, r: int, parts: Sequence[CouplingPart], multiplier: Array, recovered: Answers
+    layout: Layout,
+    r: int,
+    parts: Sequence[CouplingPart],
+    multiplier: Array,
+    recovered: Answers,
+    states: BodyStates,
 ) -> Iterator[PartLoad]:
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
         f, m, Q = (recovered.parts[name][:, k] for name in ("f", "m", "Q"))
-        yield PartLoad(part, Q, f, m, multiplier)
+        pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
+        yield PartLoad(part, Q, f, m, multiplier, pushed)
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
@@ -144,13 +167,5 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         Action("coupling", own.coupling.name, *part.ends, part.force, part.moment)
         for own in couplings
         for part in own.parts
+        if part.part.a != part.part.b
     ]
-
-
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
-    on = {
-        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
-    }
-    return {loads.carries: loads.carried, "on": on, "open": []}

@@ -101,12 +101,11 @@ class Shells(NamedTuple):
     turned: bool
 
 
-def shells_of(soup: Soup) -> Shells:
-    """The shells of a surface whose edges all have two triangles. Raises Finding."""
-    one, other = neighbours(soup)
-    first = components(len(soup.triangles), one, other)
+def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
+    """The shells of a surface that does not cross itself; beside: the two triangles of each edge. Raises Finding."""
+    first = components(len(soup.triangles), *beside)
     _, number = np.unique(first, return_inverse=True)
-    number = number.reshape(-1)
+    number = np.asarray(number, dtype=np.intp).reshape(-1)
     middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
     (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
     volumes = np.bincount(number, V)

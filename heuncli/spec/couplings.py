@@ -11,7 +11,7 @@ from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
-    from heuncli.spec.models import End
+    from heuncli.spec.models import End, Vec  # which knows this module
 
 
 class Term(NamedTuple):
@@ -38,6 +38,30 @@ class Ratio(NamedTuple):
     def joints(self) -> tuple[str, ...]:
         """The joints that it couples."""
         return joints_of(self.terms)
+
+
+class Wheel(NamedTuple):
+    """A wheel that rolls on a plane.
+
+    wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
+    wheel, in the axes of the body that has the plane. friction: the coefficient from which on it slips, None: never.
+    slides: it does not roll along its track, and only does not slip aside. held: the plane can pull it, too.
+    """
+
+    wheel: End
+    axis: Vec | None
+    radius: float
+    on: End
+    normal: Vec
+    friction: float | None = None
+    slides: bool = False
+    held: bool = False
+    type: Literal["wheel"] = "wheel"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: a wheel counts by no coordinate."""
+        return ()
 
 
 class Gear(NamedTuple):
@@ -130,4 +154,4 @@ class Cam(NamedTuple):
         return self.shaft, self.follower
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Cam  # a union of the classes here
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here

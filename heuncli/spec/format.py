@@ -66,6 +66,7 @@ from heuncli.spec.fields import (
 )
 from heuncli.spec.format_couplings import COUPLINGS, CouplingEntry
 from heuncli.spec.format_elastic import BushingEntry, MotorEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.format_shapes import Orientation, ShapeEntry
 from heuncli.spec.words import SEVERAL
 
@@ -566,7 +567,8 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "sections": SectionEntry, "cases": CaseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
+    "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -584,6 +586,7 @@ class Document(NamedTuple):
     impulses: dict[str, ImpulseEntry]
     stops: dict[str, StopEntry]
     couplings: dict[str, CouplingEntry]
+    rolling: dict[str, RollingEntry]
     latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
     cases: dict[str, CaseEntry]

@@ -45,8 +45,8 @@ class BeltEntry(Entry):
     type: Literal["belt"]
     of: list[str]
     radii: list[Length]
+    pretension: Force
     crossed: Switch = False
-    pretension: Force = 0.0
 
 
 class DifferentialEntry(Entry):

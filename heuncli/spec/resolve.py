@@ -21,8 +21,9 @@ from heuncli.spec import models as m
 from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import meant
+from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import (
     body_axes,
     drive_of,
@@ -75,7 +76,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling"),
+        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
         latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
@@ -126,7 +127,7 @@ class Resolver:
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
-            self.conditions(analysis),
+            (*self.conditions(analysis), *(conditions_of_wheels(self.document.rolling) if kind == "motion" else ())),
             analysis.tolerance is not None,
         )  # fmt: skip
 
@@ -375,6 +376,9 @@ class Resolver:
             item.of, item.at, item.peak, numbers(item.is_), item.rel, numbers(item.abs), location,
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
+
+    def wheel(self, name: str, given: RollingEntry) -> Coupling:
+        return wheel_meant(self, given)
 
     def coupling(self, name: str, given: CouplingEntry) -> Coupling:
         return meant(self, name, given)

@@ -5,6 +5,7 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
 from typing import Protocol
 
 from heuncli.expressions.programs import Expression
@@ -13,7 +14,8 @@ from heuncli.spec import couplings as c
 from heuncli.spec import format as whole
 from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
-from heuncli.spec.models import End
+from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.models import End, ResultCondition, Z
 
 
 class Following(Protocol):
@@ -37,6 +39,31 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     """A linear relation of coordinates."""
     rows = zip(entry.of, entry.factors, strict=True)
     return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
+
+
+def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
+    """The wheel that an entry of `rolling` means; in the plane all are round about z."""
+    axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
+    return c.Wheel(
+        by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
+        entry.normal, entry.friction, entry.slides is not None, entry.held,
+    )  # fmt: skip
+
+
+def conditions_of_wheels(rolling: Mapping[str, RollingEntry]) -> Iterator[ResultCondition]:
+    """What is watched for of wheels: where one lifts off its plane, which ends the motion, and where one slips."""
+    for name, entry in rolling.items():
+        if not entry.held:
+            why = f"the wheel {name} lifts: it would have to be pulled onto its plane"
+            yield below_zero(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
+        if entry.friction is not None:
+            why = f"the wheel {name} slips: it would take more friction than there is"
+            yield below_zero(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
+
+
+def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
+    """The condition that a number of the results is below zero."""
+    return ResultCondition(name, f"{of} below 0", ends, of, 0.0, False, why)
 
 
 def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:

@@ -33,7 +33,7 @@ KEY_WORDS = {
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
-    "rho": "density",
+    "rho": "density", "axle": "axis", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
@@ -135,7 +135,7 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
-    ("joints", "curve"), ("keys", "sweep"),
+    ("keys", "sweep"),
 }  # fmt: skip
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),

@@ -14,6 +14,8 @@ from heuncli.tree.starts import pose
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
+    "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE,
+    "ball_touches": kernel.BALL_TOUCHES, "ball_rolls": kernel.BALL_ROLLS,
     "cam": kernel.CAM,
 }  # fmt: skip
 
@@ -38,6 +40,7 @@ def part_row(
         e=part.e,
         g=part.g,
         factor=part.factor,
+        radius=part.radius,
         c=in_tree(part.c),
         ratio=ratio,
         freedom_b=freedom_b,
@@ -63,6 +66,8 @@ def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[in
 
 
 def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    if part.holds_speed:
+        return 0.0
     if part.coordinates:
         return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
     xa, Ra, _, _ = pose(start, part.a)

@@ -236,6 +236,7 @@ class _Builder:
         """Add the pieces of a path; which of all is the first."""
         first = len(self.pieces)
         self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
+        self.pieces.append(PieceRow(path.last, *np.zeros((4, 3))))
         return first
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:

@@ -21,6 +21,7 @@ from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.planar_scenes import flat_scene
+from tests.shared.rolling_scenes import rolling_scene
 from tests.shared.thin_rods import thin_rods
 from tests.shared.trees import tree_scene
 
@@ -128,6 +129,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "loop": lambda: to_yaml(loop_scene(which)[0]),
         "flat": lambda: flat_scene(which),
         "thin": lambda: to_yaml(thin_rods(which)[0]),
+        "rolling": lambda: rolling_scene(which)[0],
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }
@@ -141,6 +143,7 @@ CASES = [
     *(("loop", seed) for seed in (1, 2, 5, 7, 1000, 1003, 1006, 1009)),
     *(("flat", seed) for seed in (0, 2, 6, 14)),
     *(("thin", seed) for seed in (0, 1)),
+    *(("rolling", seed) for seed in (3, 4, 5)),
     ("spinning", BALLS), ("text", LOADED), ("text", ELASTIC), ("text", FOUR_BAR.replace("SPACE", "spatial")),
     ("text", FOUR_BAR.replace("SPACE", "planar")),
 ]  # fmt: skip

@@ -64,6 +64,8 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     length: of the run; coordinates: at t, by joint and quantity.
     """
     scale = max(abs(t), length)
+    if problems := paths_left(mechanism, t, scale * 2.0**-FARTHEST, coordinates):
+        return problems
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
             _problem(expression, t + beyond, _values(expression, beyond, coordinates), not_finite)
@@ -80,6 +82,21 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates)))
         > 0.0
     ]
+
+
+def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
+    """The joints whose points are at the end of their paths at t, or by their rates just beyond it."""
+    problems = []
+    for joint in mechanism.joints:
+        path = joint.path
+        s, u = coordinates.get((joint.name, "travel"), (math.nan, 0.0))
+        if path is None or path.period or path.first <= s + beyond * u <= path.last:
+            continue
+        message = f"at t = {t:.9g} s the point of joint {joint.name} runs off its path, which covers travel from "
+        message += f"{path.first:.9g} to {path.last:.9g} m"
+        hint = "a longer path, or end the run before: until: " + f"{joint.name}.travel > {path.last:.6g}"
+        problems.append(Problem("path-ends", message, None, hint, f"joints.{joint.name}"))
+    return problems
 
 
 def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:

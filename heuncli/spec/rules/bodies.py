@@ -21,7 +21,8 @@ LEAST = {
     "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
     "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
     "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
-    "scale": "the length of one unit of the file: 1 mm", "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "scale": "the length of one unit of the file: 1 mm",
+    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
 
@@ -105,6 +106,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
         if section.properties is not None:
             yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+    for name, wheel in draft.document.rolling.items():
+        yield from positive(("rolling", name), wheel, "radius")
     yield from positive(("analysis",), draft.document.analysis, "duration", "step")
 
 

@@ -71,7 +71,7 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("coupling-sizes")
 def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
-    """Leads that are not zero, radii above zero, no pretension below it; ratios of differentials that move all three."""
+    """Leads that are not zero, radii above zero, no pretension below it; differentials that move all three shafts."""
     for name, own in draft.document.couplings.items():
         path = ("couplings", name)
         if isinstance(own, ScrewEntry) and own.lead == 0.0:

@@ -24,6 +24,10 @@ def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float
         for key in ("axis", "to_axis", "normal"):
             if getattr(joint, key, None) is not None:
                 yield ("joints", name, key), getattr(joint, key)
+    for name, wheel in document.rolling.items():
+        for key in ("axis", "normal"):
+            if getattr(wheel, key) is not None:
+                yield ("rolling", name, key), getattr(wheel, key)
     for name, section in document.sections.items():
         for key in ("normal", "first_axis"):
             if getattr(section, key) is not None:

@@ -28,6 +28,9 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, blow in document.impulses.items():
         if blow.on is not None:
             yield ("impulses", name, "on"), blow.on
+    for name, wheel in document.rolling.items():
+        yield ("rolling", name, "wheel"), wheel.wheel
+        yield ("rolling", name, "on"), wheel.on
     for name, section in document.sections.items():
         end = end_of(section.reduce_to)
         if end is not None:
@@ -59,7 +62,7 @@ def ground_end(about: str) -> EndEntry:
 def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     """Every mention of a body: path, name, whether the ground may stand there."""
     for path, end in ends(draft):
-        may_be_ground = path[0] in ("joints", "foundation", "sections") or path[-1] in ("from", "to")
+        may_be_ground = path[0] in ("joints", "rolling", "foundation", "sections") or path[-1] in ("from", "to")
         yield path, end.body, may_be_ground
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False

@@ -119,7 +119,12 @@ class LoadErrors:
         self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
-        coupled = coupling_actions(coupling_loads(self.setup.scene.layout, several))
+        couplings = coupling_loads(self.setup.scene.layout, several, states)
+        coupled = coupling_actions(couplings)
+        if couplings:
+            from heuncli.kinetostatics.flanks import with_flanks  # few scenes have gears
+
+            joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
             self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupled, terms)
