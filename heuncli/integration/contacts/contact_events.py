@@ -84,9 +84,7 @@ def require_energy(jump: Jump, terms: float) -> None:
         )
 
 
-def require_caught(
-    evaluator: Evaluator, sides: RightSides, found: Answered, catches: list[Catch], t: float
-) -> None:
+def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, catches: list[Catch], t: float) -> None:
     """Raise SolveError for latches that catch what cannot come to rest: drives and joints prescribe its rate."""
     may_stay = float(evaluator.may_stay(sides.still.gap)[0])
     own = [catch for catch in catches if catch.rate != 0.0]
@@ -95,7 +93,9 @@ def require_caught(
         if not found.unmet[first + k] <= may_stay:
             contact = evaluator.layout.contacts[catch.contact]
             joint = evaluator.layout.mechanism.joints[contact.joint].name
-            message = f"at t = {t:.9g} s {contact.name} catches the joint {joint}, which drives or other latches move on"
+            message = (
+                f"at t = {t:.9g} s {contact.name} catches the joint {joint}, which drives or other latches move on"
+            )
             hint = "let the drive stand still there, release the other latch before, or catch later: when"
             raise SolveError(Problem("latch-contradicts", message, None, hint, f"latches.{contact.name}"))
 
