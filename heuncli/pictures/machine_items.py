@@ -13,6 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.joint_kinds import JOINTS, TYPES, Kind
+from heuncli.mechanism.couplings import Coupling
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
 from heuncli.records import record
@@ -43,7 +44,7 @@ HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("fi
 class Stood:
     """A machine where it stands at some instants, and how it is seen; size: of the unit that is shown in a metre.
 
-    centers: of mass, in body axes.
+    centers: of mass, in body axes. ropes: over sheaves, as they run at the start.
     """
 
     spec: Spec
@@ -52,6 +53,7 @@ class Stood:
     poses: Poses
     view: SceneView
     size: float
+    ropes: tuple[Coupling, ...] = ()
 
     def seen(self, body: str, points: Array, k: int) -> Array:
         """Where a body's points (..., 3) are seen at an instant, (..., 2) in the unit shown."""
