@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from heuncli.drawing.figure import Strokes
-from heuncli.mechanism.couplings import CoupledRow, CouplingPart
+from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.pictures.machine_items import APPLIED, ARM, THIN, Stood
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND
@@ -20,13 +20,27 @@ STEP = 0.1  # rad: of an arc as it is drawn
 def ropes(stood: Stood, k: int, *, thin: bool = False) -> Iterator[Strokes]:
     """All ropes at an instant; thin: one that is not the first."""
     for rope in stood.ropes:
-        for row in rope.rows:
-            ways = [strand(stood, part, k) for part in row.parts if not part.lies]
-            for line in (*ways, *arcs(stood, row, ways, k)):
-                yield seen(stood, line, THIN if thin else ARM)
-            for part in row.parts if not thin else ():
-                if part.lies:
-                    yield seen(stood, rim(stood, part, k), THIN)
+        for line in lines_of(stood, rope, k):
+            yield seen(stood, line, THIN if thin else ARM)
+        for part in (part for row in rope.rows for part in row.parts if part.lies and not thin):
+            yield seen(stood, rim(stood, part, k), THIN)
+
+
+def lines_of(stood: Stood, rope: Coupling, k: int) -> Iterator[Array]:
+    """A rope's strands and what lies on its sheaves, (n, 3) each."""
+    ways: list[Array] = []
+    about: dict[int, CouplingPart] = {}  # the sheave behind a strand
+    for row in rope.rows:
+        own = [strand(stood, part, k) for part in row.parts if not part.lies]
+        arcs = {len(ways) + part.strand: part for part in row.parts if part.kind == "arc"}
+        about |= arcs | {len(ways) + len(own) - 1: part for part in row.parts if part.kind == "wound" and part.strand}
+        if len(own) == 1:
+            about |= {len(ways): part for part in row.parts[-1:] if part.kind == "wound"}
+        ways += own
+    yield from ways
+    for i, (before, behind) in enumerate(pairwise(ways)):
+        if i in about:
+            yield arc(stood, about[i], before[1], behind[0], k)
 
 
 def seen(stood: Stood, places: Array, width: float) -> Strokes:
@@ -63,24 +77,24 @@ def strand(stood: Stood, part: CouplingPart, k: int) -> Array:
     return ends if way > 0.0 else ends[::-1]
 
 
-def arcs(stood: Stood, row: CoupledRow, ways: list[Array], k: int) -> Iterator[Array]:
-    """What lies on sheaves between two strands, (n, 3) each."""
-    about = {part.strand: part for part in row.parts if part.kind == "arc"}
-    for i, (before, behind) in enumerate(pairwise(ways)):
-        if i not in about:
-            continue
-        part = about[i]
-        C, n = placed(stood, part.a, np.asarray(part.p), k), axis_of(stood, part.a, np.asarray(part.e), k)
-        r = before[1] - C
-        sense = 1.0 if part.radius > 0.0 else -1.0
-        angle = np.arctan2(sense * float(n @ np.cross(r, behind[0] - C)), float(r @ (behind[0] - C))) % (2.0 * np.pi)
-        yield turned(C, r, sense * n, float(angle))
+def arc(stood: Stood, part: CouplingPart, start: Array, end: Array, k: int) -> Array:
+    """What lies on a sheave between two places of its rim, (n, 3)."""
+    C, n = placed(stood, part.a, np.asarray(part.p), k), normal(stood, part, k)
+    sense = 1.0 if (part.radius > 0.0) == (part.kind == "arc") else -1.0  # wound where it arrives: the other sign
+    r, to = start - C, end - C
+    angle = np.arctan2(sense * float(n @ np.cross(r, to)), float(r @ to)) % (2.0 * np.pi)
+    return turned(C, r, sense * n, float(angle))
+
+
+def normal(stood: Stood, part: CouplingPart, k: int) -> Array:
+    """A sheave's axis, world axes."""
+    body, axis = (part.c, part.g) if part.kind == "wound" else (part.a, part.e)
+    return axis_of(stood, body, np.asarray(axis), k)
 
 
 def rim(stood: Stood, part: CouplingPart, k: int) -> Array:
     """A sheave's rim, (n, 3)."""
-    body, axis = (part.c, part.g) if part.kind == "wound" else (part.a, part.e)
-    n = axis_of(stood, body, np.asarray(axis), k)
+    n = normal(stood, part, k)
     return turned(placed(stood, part.a, np.asarray(part.p), k), abs(part.radius) * perpendicular(n)[0], n, 2.0 * np.pi)
 
 
