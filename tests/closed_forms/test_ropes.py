@@ -89,8 +89,13 @@ bodies:
 couplings:
   tackle:
     type: rope
-    through: [ground.A, {{sheave: block.one, radius: 0.15, side: under}}, {{sheave: ground.O1, radius: 0.15, side: over}},
-              {{sheave: block.two, radius: 0.15, side: under}}, {{sheave: ground.O2, radius: 0.15, side: over}}, hand.top]
+    through:
+      - ground.A
+      - {{sheave: block.one, radius: 0.15, side: under}}
+      - {{sheave: ground.O1, radius: 0.15, side: over}}
+      - {{sheave: block.two, radius: 0.15, side: under}}
+      - {{sheave: ground.O2, radius: 0.15, side: over}}
+      - hand.top
 analysis: {{type: state}}
 """
 
@@ -123,8 +128,10 @@ joints:
 couplings:
   chain:
     type: rope
-    through: [{{sheave: pair.hub, radius: 0.20, side: left, slip: none}}, {{sheave: block.hub, radius: 0.18, side: left}},
-              {{sheave: pair.hub, radius: 0.16, side: left, slip: none}}]
+    through:
+      - {{sheave: pair.hub, radius: 0.20, side: left, slip: none}}
+      - {{sheave: block.hub, radius: 0.18, side: left}}
+      - {{sheave: pair.hub, radius: 0.16, side: left, slip: none}}
 forces: {{hand: {{type: torque, joint: axle, value: M}}}}
 parameters: {{M: "-30*{G}*0.02"}}
 analysis: {{type: state}}
