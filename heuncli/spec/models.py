@@ -18,7 +18,7 @@ from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
-from heuncli.spec.couplings import Coupling
+from heuncli.spec.couplings import Coupling, RollingWheel
 
 if TYPE_CHECKING:
     from heuncli.expressions.paths import Path
@@ -536,9 +536,9 @@ class Spec(NamedTuple):
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     @property
-    def rolling(self) -> Mapping[str, Coupling]:
+    def rolling(self) -> Mapping[str, RollingWheel]:
         """The couplings that are wheels, which stand in a block of their own."""
-        return {name: given for name, given in self.couplings.items() if given.type == "wheel"}
+        return {name: given for name, given in self.couplings.items() if isinstance(given, RollingWheel)}
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""
