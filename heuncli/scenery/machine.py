@@ -84,6 +84,11 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     return Machine(spec.title, bodies, joints, lines, grounded)
 
 
+def shapes_of(spec: Spec, body: str) -> Sequence[Shape]:
+    """What a body is drawn by: its shapes; without any, the wheels that it is."""
+    return spec.bodies[body].shapes or tuple(wheel_shapes(spec, body))
+
+
 def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
     """What a body looks like."""
     body = spec.bodies[name]
@@ -91,7 +96,7 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     ends = [j.p for j in joints if j.a == name] + [j.q for j in joints if j.b == name]
     ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
     ends += points.values()
-    shapes = body.shapes or tuple(wheel_shapes(spec, name))
+    shapes = shapes_of(spec, name)
     surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
