@@ -486,7 +486,7 @@ class RowTangent(Value):
     acceleration: float
 
 
-class Cam(Value):
+class CamStance(Value):
     """A cam and its follower in the world; or what these change by."""
 
     e: Vec3  # the disc's axis
