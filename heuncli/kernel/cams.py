@@ -127,7 +127,9 @@ def cam_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Row
     return RowTangent(Q, f, Vec3(0.0, 0.0, 0.0), rate, -bent)
 
 
-def cam_moved(scene: cython.pointer[Scene], row: cython.pointer[Closure], cam: CamStance, slope: cython.double) -> CamStance:
+def cam_moved(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], cam: CamStance, slope: cython.double
+) -> CamStance:
     """What of a cam changes by as its bodies move, and its slope by `slope`."""
     C: Vec3 = point_along(scene, row.b, row.q).x
     g: Vec3 = swung(scene, row.c, cam.g)

@@ -53,9 +53,7 @@ def flank(part: CouplingPart, shaft: Joint, follower: Joint, R_shaft: Array, R_f
     return Flank(phi, np.einsum("mij,mj->mi", back, places), curved)
 
 
-def of_roller(
-    R: float, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array
-) -> tuple[Array, Array]:
+def of_roller(R: float, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array) -> tuple[Array, Array]:
     """Places of contact, and the curvature of the path of a roller's centre, above zero where it bulges out."""
     v = slope[:, None] * w - cross_rows(e, C)
     change = bend[:, None] * w + (slope**2)[:, None] * cross_rows(np.broadcast_to(g, w.shape), w)

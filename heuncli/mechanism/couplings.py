@@ -47,8 +47,8 @@ class CamShape:
 class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
-    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates: those
-    that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's. apart: of a
+    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates:
+    those that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's. apart: of a
     mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work, whatever moves, and
     stands in the axes of c, too. standing: of a mesh a force and a moment about p that are there besides, whatever the
     multiplier, and do no work either.

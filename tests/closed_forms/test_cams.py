@@ -73,7 +73,9 @@ def test_a_roller_is_a_slider_crank() -> None:
     near(cam["on"]["tappet"]["force"][:, 0], -cam["contact"] * np.sin(slope), 5.0, 1e-5)
 
 
-@pytest.mark.parametrize(("rise", "contact"), [(flat, "flat, normal: [0, 1, 0]"), (rolling, f"roller, radius: {ROLLER}")])
+@pytest.mark.parametrize(
+    ("rise", "contact"), [(flat, "flat, normal: [0, 1, 0]"), (rolling, f"roller, radius: {ROLLER}")]
+)
 def test_the_flank_of_an_eccentric_disc_is_a_circle(rise: type, contact: str) -> None:
     """All of its places are R from its centre, and it curves so."""
     scene = study(eccentric(lift(rise, 180), contact)).setup.scene
@@ -87,7 +89,7 @@ def test_flanks_that_are_cut_away() -> None:
     """Under a face where base + lift + lift'' falls to zero, under a roller where its radius is that of its path."""
     three = lambda x: 0.02 + 0.002 * np.sin(3.0 * x)  # noqa: E731 - 0.02 - 8 * 0.002 > 0
     solved(eccentric(lift(three, 120), "flat, normal: [0, 1, 0]"))
-    with pytest.raises(SolveError, match="cut away at angles .* deg") as told:
+    with pytest.raises(SolveError, match=r"cut away at angles .* deg") as told:
         solved(eccentric(lift(lambda x: 0.02 + 0.003 * np.sin(3.0 * x), 120), "flat, normal: [0, 1, 0]"))
     assert told.value.problems[0].code == "cam-undercut"
     solved(eccentric(lift(rolling, 120), "roller, radius: 0.061"))
@@ -116,6 +118,8 @@ def test_the_jump_speed_of_a_valve_train(faster: float, code: str) -> None:
 def test_a_cam_declared_planar() -> None:
     """The same in a scene of the plane."""
     space = solved(eccentric(lift(rolling, 36), f"roller, radius: {ROLLER}"))
-    plane = solved(eccentric(lift(rolling, 36), f"roller, radius: {ROLLER}").replace("heun: 1", "heun: 1\nspace: planar"))
+    plane = solved(
+        eccentric(lift(rolling, 36), f"roller, radius: {ROLLER}").replace("heun: 1", "heun: 1\nspace: planar")
+    )
     near(plane.couplings["cam"]["contact"], space.couplings["cam"]["contact"], 10.0, 1e-9)
     near(plane.joints["shaft"]["force"], space.joints["shaft"]["force"], 10.0, 1e-9)

@@ -26,7 +26,9 @@ def bead(
 ) -> str:
     """A bead of 2 kg on a wire; x, y, z: tables, or numbers."""
     tables = {name: entry for name, entry in (("tx", x), ("ty", y), ("tz", z)) if entry.startswith("{")}
-    keys = ", ".join(f"{a}: {t if e.startswith('{') else e}" for a, t, e in zip("xyz", ("tx", "ty", "tz"), (x, y, z)))
+    keys = ", ".join(
+        f"{a}: {t if e.startswith('{') else e}" for a, t, e in zip("xyz", ("tx", "ty", "tz"), (x, y, z), strict=True)
+    )
     lines = "\n".join(f"  {name}: {entry}" for name, entry in tables.items())
     return f"""
 heun: 1
@@ -45,7 +47,9 @@ analysis: {{times: {times}, tolerance: 1e-11}}
 """
 
 
-MORE_JOINTS = {"arm.O": "  hub: {type: pin, from: ground.O, to: arm.O, axis: [0, 0, 1], initial: {angle: 0.3, rate: 4}}"}
+MORE_JOINTS = {
+    "arm.O": "  hub: {type: pin, from: ground.O, to: arm.O, axis: [0, 0, 1], initial: {angle: 0.3, rate: 4}}"
+}
 
 
 def test_a_bead_on_a_parabola() -> None:
@@ -86,7 +90,7 @@ def test_a_cycloid_is_isochronous(start: float) -> None:
 
 
 def test_a_helix() -> None:
-    """Down a helix of radius r and rise c by a unit of the way: the acceleration along it is g c, and m v^2 k across."""
+    """Down a helix of radius r and rise c by a unit of the way: along it the acceleration is g c, m v^2 k across."""
     r, n = 0.5, 2.0
     length = math.hypot(r * n, 0.3)
     x, y = (table(lambda s, f=f: r * f(n * s / length), 0.0, 2.4, 160) for f in (np.cos, np.sin))
@@ -119,7 +123,9 @@ def test_a_straight_path_is_a_line() -> None:
     line = "{type: line, from: arm.O, to: bead.P, axis: [1, 0, 0]}"
     as_line = text.replace(text[text.index("{type: curve") : text.index("}}", text.index("{type: curve")) + 2], line)
     as_line = as_line.replace("points: {P: [0, 0, 0]}}", "points: {P: [0, 0, 0]}, near: {position: [0.4, 0, 0]}}")
-    wanted = solved(as_line.replace("position: [0.4, 0, 0]", f"position: [{0.4 * math.cos(0.3)}, {0.4 * math.sin(0.3)}, 0]"))
+    wanted = solved(
+        as_line.replace("position: [0.4, 0, 0]", f"position: [{0.4 * math.cos(0.3)}, {0.4 * math.sin(0.3)}, 0]")
+    )
     for joint in ("hub", "wire"):
         near(found.joints[joint]["force"], wanted.joints[joint]["force"], 50.0, 1e-8)
     near(found.bodies["bead"]["position"], wanted.bodies["bead"]["position"], 1.0, 1e-9)
