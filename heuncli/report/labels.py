@@ -17,9 +17,9 @@ from heuncli.kinetostatics.section_axes import default_axis, nearest_axis
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.report.table_units import Units
-from heuncli.spec.models import End, Force, Friction, Section, Spec, Vec
+from heuncli.spec.models import End, Force, Friction, Section, Spec, Stop, Vec
 
-PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring", "bushing"})
+PUSHING_FORCES = frozenset({"force", "distributed", "bushing", "actuator", "spring"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 
@@ -41,12 +41,17 @@ class ForceInfo(NamedTuple):
 
 
 class StopInfo(NamedTuple):
-    """The coordinate that a stop limits, as `joint.coordinate`, its limits [rad] or [m], and its restitution."""
+    """The coordinate that a stop limits, as `joint.coordinate`, its limits [rad] or [m], and its restitution.
+
+    latch: whether it is one; at: where that catches, by a value or the stop of a name; None: where the coordinate is.
+    """
 
     coordinate: str
     low: float | None
     high: float | None
     restitution: float = 0.0
+    latch: bool = False
+    at: float | str | None = None
 
 
 class SectionInfo(NamedTuple):
@@ -111,11 +116,15 @@ def labels_of(spec: Spec) -> Labels:
     sections = {name: _section(section) for name, section in spec.sections.items()}
     about = spec.foundation.about or (0.0, 0.0, 0.0)
     named = next((name for name, point in spec.ground.points.items() if tuple(point) == tuple(about)), None)
-    stops = {
-        name: StopInfo(f"{stop.joint}.{stop.quantity}", stop.low, stop.high, stop.restitution)
-        for name, stop in {**spec.stops, **spec.latches}.items()
-    }
+    stops = {name: _stop(stop) for name, stop in {**spec.stops, **spec.latches}.items()}
     return Labels(joints, forces, sections, stops, named)
+
+
+def _stop(stop: Stop[str]) -> StopInfo:
+    coordinate, latch = f"{stop.joint}.{stop.quantity}", stop.latch
+    if latch is None:
+        return StopInfo(coordinate, stop.low, stop.high, stop.restitution)
+    return StopInfo(coordinate, None, None, latch=True, at=latch.at if latch.stop is None else latch.stop)
 
 
 def _force(force: Force) -> ForceInfo:

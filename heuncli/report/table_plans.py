@@ -71,6 +71,9 @@ def _stop_note(name: str, labels: Labels) -> str:
     if info is None:
         return ""
     unit, size = labels.units.of("rad" if info.coordinate.endswith(".angle") else "m")
+    if info.latch:
+        at = f" at {size * info.at:.6g} {unit}" if isinstance(info.at, float) else f" at the stop {info.at}"
+        return f"latch, {info.coordinate}{at if info.at is not None else ''}"
     limits = (("from", info.low), ("to", info.high))
     told = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
     return f"{info.coordinate} {' '.join(told)} {unit}"
@@ -90,7 +93,7 @@ def _section_note(name: str, labels: Labels) -> str:
 def _foundation_note(name: str, labels: Labels) -> str:
     kind, _, own = name.partition(" ")
     if kind == "element" and own in labels.stops:
-        return f"stop, {_stop_note(own, labels)}"
+        return ("" if labels.stops[own].latch else "stop, ") + _stop_note(own, labels)
     notes = {"support": _joint_note, "element": _force_note}
     return notes[kind](own, labels) if kind in notes else ""
 
@@ -146,11 +149,15 @@ STOPS = TablePlan(
     lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
     _stop_note,
 )
+COUPLED = (
+    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
+    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
+)
 COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment", "contact", "pressure_angle"),
+    COUPLED,
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(
@@ -202,8 +209,11 @@ PLANS = (
         "forces",
         "forces",
         "force",
-        ("value", "length", "angle", "rate", "power"),
-        lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
+        ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+        lambda results, labels: (
+            "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
+            + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
+        ),
         _force_note,
     ),
     ENERGY,

@@ -21,7 +21,7 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.records import replace
 from heuncli.results import Block
 from heuncli.results_schema import SHARES
-from heuncli.spec.models import ResultCondition, Spec
+from heuncli.spec.models import ResultCondition, Spec, Stop
 from heuncli.stages import ANEW, Stages
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
@@ -93,7 +93,7 @@ def solved(spec: Spec, options: Options, deadline: float | None, stages: Stages 
     seconds = {"load": options.load_seconds, "build": built - begun - looked_for, **history.seconds}
     results.work["seconds"] = seconds | {"recover": time.perf_counter() - moved}
     study = Study(spec, options, setup, history, recovery if parts is None else None, results, impulses)
-    if not conditions:
+    if not (conditions or spec.latches):
         return study
     from heuncli.study.ask.events import with_events  # few scenes have them
 
@@ -140,9 +140,22 @@ def watched(spec: Spec) -> list[str]:
     """What ends a run, what is watched, and what strikes when, in sentences."""
     times = {True: "every time", False: "the first time"}
     blows = [f"strikes: {b.name}, {times[b.every]} that {b.when.text}" for b in spec.impulses.values() if b.when]
-    return blows + [
+    return [*blows, *(latched(name, stop) for name, stop in spec.latches.items())] + [
         f"ends: until {c.text}" if c.ends else f"watched: {c.name} ({c.text})" for c in spec.analysis.conditions
     ]
+
+
+def latched(name: str, stop: Stop[str]) -> str:
+    """What a latch holds, and when, in a sentence."""
+    assert stop.latch is not None
+    latch, what = stop.latch, f"{stop.joint}.{stop.quantity}"
+    where = f"at the stop {latch.stop}" if latch.stop is not None else "where it is"
+    if latch.at is not None:
+        where = f"at {latch.at:.6g} {'rad' if stop.quantity == 'angle' else 'm'}"
+    begins = f" while {latch.when.text}" if latch.when is not None else ""
+    again = "and catches again after" if latch.every else "once"
+    ends = f", until {latch.release.text}, {again}" if latch.release is not None else ", and never lets go"
+    return f"catches: {name}, {what} {where}{begins}{ends}"
 
 
 def by_another_method(setup: Setup, method: Method, why: str) -> Setup:

@@ -157,7 +157,7 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     if JOINTS[joint.kind].coordinates == ():
         what = "has a turn_spring"
     if any(stop.joint == k for stop in mechanism.stops):
-        what = "is limited by a stop"
+        what = "is limited by a stop, or held by a latch"
     return Problem(
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",

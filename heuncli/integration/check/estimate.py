@@ -158,12 +158,18 @@ def checked_run(runs: Runs, tolerance: float, loads: LoadDifferences) -> Checked
 
 
 def changes_of_conditions(runs: Runs, best: Compared) -> tuple[Changes, ...]:
-    """When the conditions change, up to the horizon."""
-    if not runs.runner.layout.mechanism.conditions:
-        return ()
-    from heuncli.integration.check.changes import changes_of  # few scenes have them
+    """When the conditions change, and what latches hold, up to the horizon."""
+    layout, before = runs.runner.layout, np.inf if best.horizon is None else best.horizon
+    found: tuple[Changes, ...] = ()
+    if layout.mechanism.conditions:
+        from heuncli.integration.check.changes import changes_of  # few scenes have them
 
-    return changes_of(runs.runner, best.runs, np.inf if best.horizon is None else best.horizon)
+        found = changes_of(runs.runner, best.runs, before)
+    if layout.latches:
+        from heuncli.integration.check.latch_changes import latch_changes
+
+        found += latch_changes(layout, best.runs, before)
+    return found
 
 
 def answers_of(runs: Runs, best: Compared, kept: Mask | slice, causes: bool) -> Iterator[tuple[slice, Recovered]]:

@@ -84,6 +84,22 @@ def require_energy(jump: Jump, terms: float) -> None:
         )
 
 
+def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, catches: list[Catch], t: float) -> None:
+    """Raise SolveError for latches that catch what cannot come to rest: drives and joints prescribe its rate."""
+    may_stay = float(evaluator.may_stay(sides.still.gap)[0])
+    own = [catch for catch in catches if catch.rate != 0.0]
+    first = len(sides.loads) - len(own)
+    for k, catch in enumerate(own):
+        if not found.unmet[first + k] <= may_stay:
+            contact = evaluator.layout.contacts[catch.contact]
+            joint = evaluator.layout.mechanism.joints[contact.joint].name
+            message = (
+                f"at t = {t:.9g} s {contact.name} catches the joint {joint}, which drives or other latches move on"
+            )
+            hint = "let the drive stand still there, release the other latch before, or catch later: when"
+            raise SolveError(Problem("latch-contradicts", message, None, hint, f"latches.{contact.name}"))
+
+
 @record
 class Unrefined:
     """Impulses as the complementarity problem gives them, and the columns of unit impulses."""
@@ -100,7 +116,7 @@ class Contacts:
         self.evaluator, self.last = evaluator, last
         self.layout = evaluator.layout
         self.holding = self.layout.all_open
-        self.latches = Latches(self.layout)
+        self.latches = Latches(self.layout, last)
         self.strikes: dict[str, int] = {}
         self.notes: dict[str, None] = {}
         self.since, self.at_once = -1.0, 0
@@ -127,13 +143,15 @@ class Contacts:
         sides = right_sides(self.evaluator, given, state, latches.holding())
         touch = touching(self.layout, sides.still, closed, row, self.last)
         catches = latches.catch(said, sides.still, touch)
-        touch = touch.some(latches.free_of(touch))
+        free = latches.free_of(touch)
+        unwatched, touch = touch.which[~free], touch.some(free)
         sides = with_catches(self.layout, sides, catches)
         found, pressed = self.pose(given, sides, touch)
+        require_caught(self.evaluator, sides, found, catches, given.before)
         outcome = self.solve(given, sides, found.columns, pressed, catches)
         self.holding = latches.holding()
         self.holding[touch.which] = outcome.holding
-        self.holding[latches.unwatched] = UNWATCHED
+        self.holding[unwatched] = UNWATCHED
         self.tell(time, touch, outcome)
         self.tell_latches(time, released, catches)
         bears, n = np.flatnonzero(outcome.struck.impulses), len(sides.loads)

@@ -1,6 +1,6 @@
 """Latches: which of them hold at an instant of a run, and where.
 
-    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches          (a row of (45)-(48))
+    g = q - c = 0 from the catch on, both ways;   J (V+ - V-) = -g' where it catches, one more row of a blow's equations
 A latch is out while its own condition is true and that of its release is not. Out, it catches what touches its stop's
 limit and does not leave it, what comes through its value, or what it is to hold wherever that is. What is caught has no
 rate behind the blow, whatever the restitution of the stop, and stays until the release becomes true. A coordinate that
@@ -61,8 +61,9 @@ class Catch:
 class Latches:
     """The latches of a run: which hold, and how often each has caught. Changes with every instant met."""
 
-    def __init__(self, layout: Layout) -> None:
-        self.layout = layout
+    def __init__(self, layout: Layout, last: float) -> None:
+        """last: the end of the run [s]."""
+        self.layout, self.last = layout, last
         named = {stop.name: stop for stop in layout.mechanism.stops}
         self.stops: dict[int, Stop] = {i: named[layout.contacts[i].name] for i in layout.latches}
         # of the other limits and latches the coordinate that each holds
@@ -89,11 +90,6 @@ class Latches:
             found[i], found[n + self.layout.latches.index(i)] = 1.0, at
         return found
 
-    @property
-    def unwatched(self) -> list[int]:
-        """The other contacts whose coordinates are held."""
-        return [i for i in self.coordinates if i not in self.stops and self.is_held(i)]
-
     def let_go(self, said: Bolts) -> list[str]:
         """Let those go that are drawn back; their names."""
         gone = [i for i, back in zip(self.stops, said.back, strict=True) if back and i in self.holds]
@@ -109,7 +105,7 @@ class Latches:
             idle = i in self.holds or (self.caught[i] > 0 and not stop.latch.every)
             if idle or not said.out[n] or said.back[n] or self.is_held(i):
                 continue
-            rate, noise = motion_along(self.layout, at, self.layout.contacts[i])
+            rate, noise = motion_along(self.layout, at, self.layout.contacts[i], self.last)
             place = self.place(i, stop, at, touch, said.passed[n], abs(rate) <= noise)
             if place is None:
                 continue
@@ -144,14 +140,15 @@ class Latches:
         return latch.at if passed or (still and abs(gap) <= near) else None
 
 
-def motion_along(layout: Layout, at: Recovered, contact: Contact) -> tuple[float, float]:
-    """The rate of the coordinate that a latch holds, and what rounding makes of it."""
+def motion_along(layout: Layout, at: Recovered, contact: Contact, last: float) -> tuple[float, float]:
+    """The rate of the coordinate that a latch holds, and what rounding makes of it in a run up to `last`."""
     bodies = at.bodies[0]
-    load = unit_load(layout, bodies, at.rows[0], contact, way=1.0)
+    load = unit_load(layout, at, contact, way=1.0)
     rate = float(np.sum(load[:, :3] * bodies["omega"]) + np.sum(load[:, 3:] * bodies["v"]))
     sizes = np.linalg.norm(load[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
     sizes += np.linalg.norm(load[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)
-    return rate, tolerances.CONTACT_RATE * float(sizes)
+    reach = tolerances.KERNEL["touching"] * terms_of_gap(layout, bodies, contact)
+    return rate, max(tolerances.CONTACT_RATE * float(sizes), reach / (last or 1.0))
 
 
 def with_catches(layout: Layout, sides: RightSides, catches: Sequence[Catch]) -> RightSides:

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem
-from heuncli.expressions.programs import KNOT, TABLE, Expression, TableFunction, outside
+from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import Bushing, Load, Mechanism, PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
@@ -36,7 +39,23 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
     for name, point in layout.mechanism.points.items():
         jets = motion_of(layout, point, recovered.bodies[instant : instant + 1])[0]
         coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
+    for load, rows in layout.mechanism.load_rows():
+        coordinates |= acted_between(load, recovered.loads[instant, rows])
     return coordinates
+
+
+def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
+    """What a load acts between, as its own law may name it; of rates of rates nothing is known."""
+    name = f"{LOADS}.{load.name}"
+    if isinstance(load, PairLoad):
+        length, rate = float(rows["span"][0]), float(rows["rate"][0])
+        return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
+    if not isinstance(load, Bushing):
+        return {}
+    parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
+    return {
+        (name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)
+    }
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:

@@ -190,7 +190,7 @@ def _still(seen: View) -> Iterator[Departure]:
             yield Departure(f"drives.{drive.name} moves joints.{joint.name} out of it", 1.0, True)
     for stop in mechanism.stops:
         if seen.still(stop.joint, stop.quantity):
-            yield Departure(f"stops.{stop.name} limits a coordinate out of it", 1.0, True)
+            yield Departure(f"{stop.path} limits a coordinate out of it", 1.0, True)
     base = {"rate": "angle", "speed": "travel"}
     for load in mechanism.loads:
         for name, quantity in dict.fromkeys(use for e in load.values for use in e.uses if use[0] in numbers):

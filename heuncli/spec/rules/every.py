@@ -20,13 +20,15 @@ from heuncli.spec.rules import (
     plane,
     products,
     references,
+    rolling,
     sections,
     stops,
 )
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, cams, sections,
+    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, rolling, cams,
+    sections,
     analysis, methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 
