@@ -123,3 +123,30 @@ def test_a_cam_declared_planar() -> None:
     )
     near(plane.couplings["cam"]["contact"], space.couplings["cam"]["contact"], 10.0, 1e-9)
     near(plane.joints["shaft"]["force"], space.joints["shaft"]["force"], 10.0, 1e-9)
+
+
+def test_a_tappet_that_flies_falls_back() -> None:
+    """Let go 0.1 m above a disc that stands, it strikes with sqrt(2 g h) and rises to e^2 h; the loss is the work."""
+    h, e = 0.1, 0.5
+    text = eccentric(lift(flat, 36), "flat, normal: [0, 1, 0]", 1.0, f"restitution: {e}")
+    text = text.replace("motor: {joint: shaft, angle: 1.0*t}", "motor: {joint: shaft, angle: 0}")
+    text = text.replace("axis: [0, 1, 0]}", f"axis: [0, 1, 0], initial: {{travel: {R + h}}}}}")
+    fall, top = math.sqrt(2.0 * h / 9.81), math.sqrt(2.0 * h / 9.81) * (1.0 + e)
+    text = text[: text.index("analysis:")] + f"analysis: {{times: [0, {fall * 0.5}, {top}]}}\n"
+    results = solved(text)
+    near(results.coordinates["guide"]["travel"], [R + h, R + h * 0.75, R + h * e * e], R, 1e-9)
+    energy = results.energy["kinetic"] + results.energy["potential"]
+    near(energy - results.energy["work"], energy[0], 0.5 * 9.81 * h, 1e-9)
+    near(energy[2] - energy[0], 0.5 * 9.81 * h * (e * e - 1.0), 0.5 * 9.81 * h, 1e-9)
+    near(results.couplings["cam"]["contact"], 0.0, 1.0, 1e-12)
+
+
+def test_a_strike_turns_the_disc_back() -> None:
+    """A disc that turns freely: the impulse stands beside its axis, and energy and work of the strike add up."""
+    text = eccentric(lift(flat, 72), "flat, normal: [0, 1, 0]", 60.0, "restitution: 0.3")
+    text = text[: text.index("drives:")] + text[text.index("couplings:") :]
+    text = text.replace("axis: [0, 0, 1]}", "axis: [0, 0, 1], initial: {angle: 0.3, rate: 60}}").replace("0.1,", "0.15,")
+    results = solved(text)
+    total = results.energy["kinetic"] + results.energy["potential"] - results.energy["work"]
+    near(total, total[0], float(results.energy["kinetic"].max()), 1e-8)
+    assert results.energy["work"][-1] < -0.01
