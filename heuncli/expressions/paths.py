@@ -88,7 +88,7 @@ class Path:
         begun = np.argpartition(away, min(TRIED, len(s)) - 1, axis=1)[:, :TRIED]
         found = self._descended(points[:, None, :], s[begun], low[begun], high[begun])
         left = np.sum(np.square(points[:, None, :] - self.at(found)[0]), axis=-1)
-        return np.take_along_axis(found, np.argmin(left, axis=1)[:, None], axis=1)[:, 0]
+        return np.asarray(np.take_along_axis(found, np.argmin(left, axis=1)[:, None], axis=1)[:, 0])
 
     def _descended(self, points: Array, begun: Array, low: Array, high: Array) -> Array:
         """Where Newton's method leads from parameters, held between others."""
@@ -132,7 +132,7 @@ def path_of(parts: Sequence[TableFunction | float]) -> Path:
 
 def knots_of(table: TableFunction) -> Array:
     """The points of the parameter at which a table's pieces begin, and its end."""
-    return np.frombuffer(table.numbers)[1 : table.pieces + 2]
+    return np.asarray(np.frombuffer(table.numbers)[1 : table.pieces + 2])
 
 
 def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]:
@@ -149,7 +149,7 @@ def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]
 def merged(knots: Array, span: float) -> Array:
     """Knots without those that only rounding tells apart; the ends stay."""
     apart = np.diff(knots) > tolerances.SAME_VALUE * span
-    kept = knots[np.append(True, apart)]
+    kept: Array = knots[np.append(True, apart)]
     kept[-1] = knots[-1]
     return kept
 

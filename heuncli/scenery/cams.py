@@ -33,7 +33,7 @@ def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
             continue
         joints = [joint(spec.joints[name], 0, 1, False) for name in (given.shaft, given.follower)]
         (row,) = cam_rows(given, 0, joints[0], 1, joints[1])
-        own = flank(row.parts[0], *joints, np.eye(3), np.eye(3))
+        own = flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
         turns = round(2.0 * np.pi / float(own.angles[-1] - own.angles[0]))
         part = own.places[:: max(1, turns * len(own.places) // MOST)]
         around = [part @ about(joints[0].axis, -k * 2.0 * np.pi / turns).T for k in range(turns)]
