@@ -100,9 +100,10 @@ class Path:
             curved = square + np.sum(off * bend, axis=-1)
             to = np.clip(found - np.sum(off * slope, axis=-1) / np.where(curved > 0.0, curved, square), low, high)
             if np.all(np.abs(to - found) <= np.finfo(float).eps * (abs(self.first) + abs(self.last))):
-                return to
+                return np.asarray(to)
             found = to
-        return found
+        nearest: Array = found
+        return nearest
 
     @property
     def greatest(self) -> tuple[float, float, float]:
