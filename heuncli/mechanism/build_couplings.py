@@ -118,9 +118,13 @@ def of_coordinate(drawn: Drawing, term: c.Term, factor: float) -> CouplingPart:
 
 
 def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
-    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
+    """A disc and its follower."""
     k, n = drawn.number[given.shaft], drawn.number[given.follower]
-    shaft, follower = drawn.joints[k], drawn.joints[n]
+    return cam_rows(given, k, drawn.joints[k], n, drawn.joints[n])
+
+
+def cam_rows(given: c.Cam, k: int, shaft: Joint, n: int, follower: Joint) -> tuple[CoupledRow, ...]:
+    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
     swings = JOINTS[follower.kind].coordinates[0] == "angle"
     shape = CamShape(
         path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,

@@ -127,7 +127,9 @@ def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
         return float(level), -piece.area
 
     pieces.sort(key=order)
-    return [item for piece in pieces for item in piece.items]
+    paths = (stood.seen(GROUND, path, k) for path in stood.machine.paths if not thin)
+    ways: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, THIN) for ends in paths]
+    return ways + [item for piece in pieces for item in piece.items]
 
 
 def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPiece]:

@@ -95,6 +95,7 @@ def _extent(machine: Machine, centers: Mapping[str, Array], poses: Poses) -> Arr
     for body in machine.bodies:
         own = [surface.corners for surface in body.surfaces if not body.spread] + list(body.lines)
         points += [place for part in own for place in poses.at(body.name, part, 0)]
+    points += [place for path in machine.paths for place in path]
     points += [poses.at(j.b, j.q, 0) for j in machine.joints] + [poses.at(j.a, j.p, 0) for j in machine.joints]
     return np.array(points)
 

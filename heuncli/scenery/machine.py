@@ -59,13 +59,14 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: the points of the ground."""
+    """All of a scene; grounded: the points of the ground; paths: the lines in it along which points run."""
 
     title: str
     bodies: tuple[BodyLook, ...]
     joints: tuple[JointLook, ...]
     lines: tuple[LineLook, ...]
     grounded: Mapping[str, Array]
+    paths: tuple[Array, ...] = ()
 
 
 def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
@@ -81,7 +82,16 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
-    return Machine(spec.title, bodies, joints, lines, grounded)
+    return Machine(spec.title, bodies, joints, lines, grounded, tuple(drawn_lines(spec, GROUND)))
+
+
+def drawn_lines(spec: Spec, body: str) -> Iterator[Array]:
+    """Lines of a body, or of the ground: outlines of cams, and paths along which points run."""
+    if any(given.type == "cam" for given in spec.couplings.values()) or any(j.path for j in spec.joints.values()):
+        from heuncli.scenery.cams import cam_outlines, paths_of  # few scenes have them
+
+        yield from cam_outlines(spec, body)
+        yield from paths_of(spec, body)
 
 
 def shapes_of(spec: Spec, body: str) -> Sequence[Shape]:
@@ -100,15 +110,15 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name)))
+        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name), *drawn_lines(spec, name)))
     # of point masses alone neither centre nor inertia is known yet, nor needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
-    line = _through([*ends, *centre])
+    line, drawn = _through([*ends, *centre]), tuple(drawn_lines(spec, name))
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
-    if float(np.ptp(line, axis=0).max()) < SMALL * gyration:
+    if not drawn and float(np.ptp(line, axis=0).max()) < SMALL * gyration:
         return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
-    return BodyLook(name, points, (), (line,))
+    return BodyLook(name, points, (), (line, *drawn))
 
 
 def _arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:
