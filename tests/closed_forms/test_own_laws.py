@@ -50,6 +50,7 @@ def block(load: str, analysis: str = RUN) -> str:
          'type: friction, joint: shaft, torque: "3 + 0*t", speed: 0.1'),
     ],
 )  # fmt: skip
+@pytest.mark.heavy
 def test_a_law_says_what_numbers_say(numbers: str, law: str) -> None:
     """The same motion and the same value; what has no potential then is work."""
     wanted, found = solved(block(f"{{{numbers}}}")), solved(block(f"{{{law}}}"))
@@ -210,6 +211,7 @@ analysis: {{times: [0, 0.9], tolerance: 1e-10}}
 WORK = 400 * 0.5e-4  # of the triangle
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize(
     ("load", "work", "aside"),
     [
