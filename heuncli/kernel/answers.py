@@ -99,6 +99,10 @@ def put_answers(
         at = put(to.parts, at, scaled(part.factor, part.f))
         at = put(to.parts, at, scaled(part.factor, part.m))
         at = put(to.parts, at, part.Q)
+        at = put(to.parts, at, part.on_a)
+        at = put(to.parts, at, part.on_b)
+        to.parts[at] = part.gap
+        at += 1
     at = j * to.whole_width
     to.whole[at] = scene.gap
     to.whole[at + 1] = idle
@@ -151,7 +155,7 @@ def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.voi
         scene.pivot_recovered = order_all(scene, 0.0)
         scene.pivot_recovered *= scene.pivot_recovered
     measure_answers(scene)
-    scene.residual = unmet(scene)
+    scene.residual = unmet(scene, scene.load_size)
 
 
 def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:
