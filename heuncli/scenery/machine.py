@@ -8,6 +8,7 @@ are one place, as the ellipsoid that has its inertia.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_
 from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 
 GROUND = "ground"
+NOTHING: Mapping[str, tuple[Array, ...]] = MappingProxyType({})
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
 OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
@@ -58,13 +60,14 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: the points of the ground."""
+    """All of a scene; grounded: the points of the ground; strands: of belts, on bodies and the ground, in their axes."""
 
     title: str
     bodies: tuple[BodyLook, ...]
     joints: tuple[JointLook, ...]
     lines: tuple[LineLook, ...]
     grounded: Mapping[str, Array]
+    strands: Mapping[str, tuple[Array, ...]] = NOTHING
 
 
 def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
@@ -80,7 +83,13 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
-    return Machine(spec.title, bodies, joints, lines, grounded)
+    if not any(own.type in ("gear", "belt") for own in spec.couplings.values()):
+        return Machine(spec.title, bodies, joints, lines, grounded)
+    from heuncli.scenery.pitch_lines import pitch_lines  # few scenes have gears
+
+    circles, strands = pitch_lines(spec)
+    bodies = tuple(body._replace(lines=(*body.lines, *circles.get(body.name, ()))) for body in bodies)
+    return Machine(spec.title, bodies, joints, lines, grounded, strands)
 
 
 def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
