@@ -104,8 +104,7 @@ class Shells(NamedTuple):
 def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
     """The shells of a surface that does not cross itself; beside: the two triangles of each edge. Raises Finding."""
     first = components(len(soup.triangles), *beside)
-    _, number = np.unique(first, return_inverse=True)
-    number = np.asarray(number, dtype=np.intp).reshape(-1)
+    number: Numbers = np.unique(first, return_inverse=True)[1].reshape(-1).astype(np.intp)
     middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
     (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
     volumes = np.bincount(number, V)

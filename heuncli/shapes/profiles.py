@@ -87,16 +87,17 @@ def edges_of(part: Polyhedron, local: LocalSurface) -> Iterator[Edges2]:
 
 def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurface) -> tuple[Array, dict[int, str]]:
     """Area, I1, I2, J, c1, c2 (6, k) of planes, and why they are not known, by the planes' numbers."""
+    length = np.sqrt(((edges.q - edges.p) ** 2).sum(axis=1))
+    L = np.bincount(edges.plane, length, k)
     A, Sx, Sy = edges.moments(np.zeros((k, 2)))[:3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        centroid = np.nan_to_num(np.stack([Sx / A, Sy / A], axis=1))
+    thick = A > tolerances.EPS * L * L
+    area = np.where(thick, A, 1.0)
+    centroid = np.where(thick, [Sx, Sy], 0.0).T / area[:, None]
     A, _, _, I2, I12, I1, *thirds = edges.moments(centroid)
     off = np.abs(edges.p - centroid[edges.plane])
     c1, c2 = np.zeros(k), np.zeros(k)
     np.maximum.at(c1, edges.plane, off[:, 0])
     np.maximum.at(c2, edges.plane, off[:, 1])
-    length = np.sqrt(((edges.q - edges.p) ** 2).sum(axis=1))
-    L = np.bincount(edges.plane, length, k)
     parts, holes = counted(edges, length, k, near)
     longest = L + 2.0 * np.sqrt(np.pi) * np.maximum(holes - parts, 0) * np.sqrt(np.abs(A))
     size = A * np.maximum(c1, c2) ** 3
@@ -106,7 +107,9 @@ def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurfac
         lopsided = np.abs(thirds).max(axis=0) / size
     missing: dict[int, str] = {}
     for i in np.flatnonzero(met).tolist():
-        if parts[i] != 1:
+        if not thick[i]:
+            missing[i] = "the cut has no area"
+        elif parts[i] != 1:
             missing[i] = f"the outline of the mesh has {int(parts[i])} parts"
         elif not turned[i] <= tolerances.OUTLINE_PRINCIPAL:
             axis = _axis(I1[i], I2[i], I12[i], local)

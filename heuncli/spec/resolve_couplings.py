@@ -42,10 +42,10 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
 
 
-def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
+def wheel_meant(by: Following, entry: RollingEntry) -> c.RollingWheel:
     """The wheel that an entry of `rolling` means; in the plane all are round about z."""
     axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
-    return c.Wheel(
+    return c.RollingWheel(
         by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
         entry.normal, entry.friction, entry.slides is not None, entry.held,
     )  # fmt: skip
@@ -112,11 +112,26 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     )  # fmt: skip
 
 
+def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
+    """A rope."""
+    through = tuple(passage(by, given) for given in entry.through)
+    return c.Rope(through, entry.length, entry.tension_only, entry.restitution)
+
+
+def passage(by: Following, given: f.PassageEntry) -> c.Passage:
+    """Where a rope passes."""
+    written = given.point if given.point is not None else given.sheave
+    assert written is not None
+    end = by.end(written)
+    return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
+
+
+def constant_velocity(by: Following, name: str, entry: f.ConstantVelocityEntry) -> c.ConstantVelocity:
+    """Two shafts in a ball that turn alike."""
+    return c.ConstantVelocity(entry.joint, entry.axis, entry.axis if entry.to_axis is None else entry.to_axis)
+
+
 MEANINGS: dict[str, Callable[..., c.Coupling]] = {
-    "ratio": ratio,
-    "gear": gear,
-    "screw": screw,
-    "belt": belt,
-    "differential": differential,
-    "cam": cam,
-}
+    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam, "rope": rope,
+    "cv": constant_velocity,
+}  # fmt: skip

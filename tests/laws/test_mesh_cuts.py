@@ -84,7 +84,7 @@ def test_a_piece_is_that_of_tetrahedra_clipped_one_by_one(name: str) -> None:
 
 @pytest.mark.parametrize("name", BODIES)
 def test_a_piece_loses_what_the_plane_passes_over(name: str) -> None:
-    """Between corners the area is a polynomial of degree 2 in height, its moment of degree 3: Simpson's rule has both."""
+    """Between corners the area is a polynomial of degree 2 in height, its moment of degree 3: Simpson's rule."""
     f = body(BODIES[name], density=1.0)
     for n in (np.eye(3)[0], np.eye(3)[2], unit(np.array([0.3, -0.5, 0.8]))):
         levels = np.unique(np.round(BODIES[name].reshape(-1, 3) @ n, 12))
