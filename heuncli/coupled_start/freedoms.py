@@ -52,8 +52,8 @@ class Freedoms:
         rate_at = places_of_rates(layout)
         own = [n for i in sorted(bodies) for n in _answers(layout, i) if rate_at[n] >= 0]
         self.answers: Indices = np.array(own, dtype=int)
-        self.rate_at: Indices = rate_at[self.answers]
-        self.all_rates: Indices = rate_at[rate_at >= 0]
+        self.rate_at: Indices = np.array(rate_at[self.answers], dtype=np.intp)
+        self.all_rates: Indices = np.array(rate_at[rate_at >= 0], dtype=np.intp)
 
     def measured(self, state: Array) -> Measured:
         """How all stands and moves at a state."""

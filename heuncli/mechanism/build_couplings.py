@@ -27,7 +27,7 @@ SIZE = 0.0  # weight of gaps that are angles: the scene's size
 def couplings_of(
     spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
 ) -> tuple[Coupling, ...]:
-    """All couplings, in the order of the spec; number: of the joints by their names. Raises SpecError with all misfits."""
+    """All couplings, in the order of the spec; number: of joints by their names. Raises SpecError with all misfits."""
     drawn = Drawing(spec, joints, bodies, number)
     found, problems = [], []
     for name, given in spec.couplings.items():

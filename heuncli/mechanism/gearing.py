@@ -126,9 +126,10 @@ def members(joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
         return carrier, member(joints, bodies, of[0], carrier), member(joints, bodies, of[1], carrier)
     for arm, joint in enumerate(joints):
         for k, other in (of, of[::-1]):
-            base, carrier = _ends(joint, joints[k], joints[other])
-            if base is None or carrier is None or joint.kind != "pin":
+            ends = _ends(joint, joints[k], joints[other])
+            if ends is None or joint.kind != "pin":
                 continue
+            base, carrier = ends
             own = coaxial(joints, bodies, k, arm, base, carrier)
             if own is not None:
                 mate = member(joints, bodies, other, carrier)
@@ -139,11 +140,11 @@ def members(joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
     )  # fmt: skip
 
 
-def _ends(arm: Joint, beside: Joint, on: Joint) -> tuple[int | None, int | None]:
+def _ends(arm: Joint, beside: Joint, on: Joint) -> tuple[int, int] | None:
     """The body that an arm shares with the joint beside it, and the one with the joint that it carries."""
     base = {arm.a, arm.b} & {beside.a, beside.b}
     carrier = ({arm.a, arm.b} & {on.a, on.b}) - base
-    return (base.pop(), carrier.pop()) if len(base) == 1 and len(carrier) == 1 else (None, None)
+    return (base.pop(), carrier.pop()) if len(base) == 1 and len(carrier) == 1 else None
 
 
 def member(joints: Sequence[Joint], bodies: Sequence[Body], k: int, carrier: int) -> GearMember:
@@ -308,7 +309,7 @@ def _meeting(first: GearMember, second: GearMember) -> Array:
     gap, size = abs(float(n @ D)) / _length(n), _length(D)
     if gap > TYPED_POINT * size:
         raise Finding(MISFIT, f"the axes are neither parallel nor do they meet: they pass at {gap:.3g} m",
-                      "gears with crossed axes, as worms, are tied by type: ratio, without their tooth force")  # fmt: skip
+                      "tie gears with crossed axes, as worms, by type: ratio, without their tooth force")  # fmt: skip
     return np.asarray(first.point + float(cross(D, second.axis) @ n) / float(n @ n) * first.axis)
 
 

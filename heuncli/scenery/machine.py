@@ -61,7 +61,7 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: the points of the ground; strands: of belts, on bodies and the ground, in their axes."""
+    """All of a scene; grounded: points of the ground; strands: of belts, on bodies and the ground, in their axes."""
 
     title: str
     bodies: tuple[BodyLook, ...]
