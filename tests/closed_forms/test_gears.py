@@ -25,7 +25,7 @@ ROUNDING = 1e-12
     ],
 )
 def test_wheels_turn_by_their_ratio_and_bear_their_tooth_force(mesh: dict[str, Any], ratio: float, arm: float) -> None:
-    """The motor turns its own inertia and a ninth of the wheel's; what is left is the tooth force, at the pitch point."""
+    """The motor turns its own inertia and a ninth of the wheel's; the tooth force is the rest, at the pitch point."""
     scene = pair(pressure_angle="25 deg", helix="15 deg", **mesh)
     scene["ground"]["points"]["P"] = [0.1, 0, 0]
     found = solved(scene)
