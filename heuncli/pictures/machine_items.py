@@ -271,6 +271,13 @@ def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[It
     return _link(stood, look, kind, APPLIED, k, thin)
 
 
+def strands(stood: Stood, k: int) -> Iterator[Strokes]:
+    """The strands of belts."""
+    for body, lines in stood.machine.strands.items():
+        for places in lines:
+            yield Strokes(stood.seen(body, places, k)[None], APPLIED, ARM)
+
+
 def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:
     """Two sleeves about its `to` point, with the ground behind them where it stands on that; moved apart: a line."""
     first, second = (stood.seen(*end, k) for end in ((look.a, look.p), (look.b, look.q)))

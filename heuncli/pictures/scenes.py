@@ -128,6 +128,7 @@ def _first(stood: Stood) -> list[Item]:
     items = [*machine_items.bodies(stood, 0), *machine_items.marks(stood, 0)]
     items += [item for line in stood.machine.lines for item in machine_items.line(stood, line, 0)]
     items += rope_items.ropes(stood, 0)
+    items += machine_items.strands(stood, 0)
     items += machine_items.in_joints(stood, 0)
     return items + machine_items.joints(stood, 0)
 

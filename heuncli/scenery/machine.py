@@ -8,6 +8,7 @@ points, or, where these are one place, as the ellipsoid that has its inertia.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from heuncli.scenery.wheels import spokes, wheel_shapes
 from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 
 GROUND = "ground"
+NOTHING: Mapping[str, tuple[Array, ...]] = MappingProxyType({})
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
 OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
@@ -59,7 +61,10 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: the points of the ground; paths: the lines in it along which points run."""
+    """All of a scene; grounded: points of the ground; paths: lines in it along which points run; strands: of belts.
+
+    Strands stand on bodies and the ground, in their axes.
+    """
 
     title: str
     bodies: tuple[BodyLook, ...]
@@ -67,6 +72,7 @@ class Machine(NamedTuple):
     lines: tuple[LineLook, ...]
     grounded: Mapping[str, Array]
     paths: tuple[Array, ...] = ()
+    strands: Mapping[str, tuple[Array, ...]] = NOTHING
 
 
 def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
@@ -82,7 +88,14 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
-    return Machine(spec.title, bodies, joints, lines, grounded, tuple(drawn_lines(spec, GROUND)))
+    paths = tuple(drawn_lines(spec, GROUND))
+    if not any(own.type in ("gear", "belt") for own in spec.couplings.values()):
+        return Machine(spec.title, bodies, joints, lines, grounded, paths)
+    from heuncli.scenery.pitch_lines import pitch_lines  # few scenes have gears
+
+    circles, strands = pitch_lines(spec)
+    bodies = tuple(body._replace(lines=(*body.lines, *circles.get(body.name, ()))) for body in bodies)
+    return Machine(spec.title, bodies, joints, lines, grounded, paths, strands)
 
 
 def drawn_lines(spec: Spec, body: str) -> Iterator[Array]:
