@@ -194,7 +194,9 @@ ROWS: tuple[Quantity, ...] = (
         scalar("normal", "N")),
     *at("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
         scalar("radial", "N"), scalar("axial", "N")),
-    *at("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
+    *at("couplings.COUPLING", "of a screw, about its axis; of a constant-velocity joint ON `to`, about either shaft", scalar("torque", "N·m")),
+    *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
+        scalar("tension", "N"), scalar("last_tension", "N")),
     *at("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",
         scalar("tight", "N"), scalar("slack", "N")),
     *at("couplings.COUPLING", "of a wheel: what keeps it from slipping, in all, along its track and along its axle's "

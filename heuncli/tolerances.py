@@ -129,6 +129,13 @@ CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if
 NO_ANSWER = 1e-13  # of what free bodies would answer: what all other joints hold already, to hundreds of roundings
 SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instants are told apart by (least_step)
 
+# -- ropes over sheaves
+FLEET_ANGLE = 0.07  # rad, 4 deg: how far a rope may leave a sheave's plane (DIN 15020-1); its forces are then right to
+# 1 - cos of it, 0.25 %
+FLEET_SEEN = 1e-4  # rad: below, what that makes is 5e-9 of a force, as little as the loads of a run are known to
+ASKEW = 1e-7  # rad: axes of two sheaves that a strand runs between, which only rounding may part
+OFF_SHEAVE = 1e-9  # rad: an arc that is less than none by more has left its sheave
+
 # -- same instant, same place, same direction
 SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
 SIDE_BY_SIDE = 1e-12  # of the run's length: thousands of roundings of an instant; what jumps between has two sides

@@ -22,6 +22,8 @@ if not cython.compiled:
         DOT,
         GUIDE,
         MESH,
+        ROD,
+        STRAND,
         SUM,
         TOUCHES,
         TURN,
@@ -37,6 +39,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
     from heuncli.kernel.tangent_rolling import rolling_along
+    from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tree import direction_of
 
 
@@ -110,7 +113,12 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return dot_along(scene, row, Q)
     elif row.kind == TURN:
         return turn_row_along(scene, row, Q)
-    return rod_along(scene, row, Q)
+    elif row.kind == ROD:
+        return rod_along(scene, row, Q)
+    elif row.kind == STRAND:
+        return strand_along(scene, row)
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    return RowTangent(Q, zero, zero, 0.0, 0.0)  # what lies on a sheave
 
 
 def guide_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

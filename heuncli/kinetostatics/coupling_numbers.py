@@ -20,7 +20,8 @@ from heuncli.spec.couplings import Wheel
 class CoupledNumber:
     """A number of a coupling, (..., n_t); rows: the places of the conditions that it hangs on, among the coupling's.
 
-    factor: times which the multiplier of a single condition is the number; 0: it is no such multiple.
+    factor: times which the multiplier of a single condition is the number; 0: it is no such multiple; linear: but one
+    that changes in time.
     """
 
     name: str
@@ -28,6 +29,12 @@ class CoupledNumber:
     rows: tuple[int, ...]
     is_moment: bool = False
     factor: float = 0.0
+    linear: bool = False
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether the shares of causes add up to it."""
+        return self.linear or self.factor != 0.0
 
 
 def numbers_of(loads: CouplingLoads) -> list[CoupledNumber]:
@@ -52,7 +59,7 @@ def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, obje
 def carried(loads: CouplingLoads) -> list[CoupledNumber]:
     """The multiplier of its first condition: the force or the moment for which the coupling is there."""
     name = loads.carries
-    return [CoupledNumber(name, loads.carried, (0,), name == "moment", float(name in ("force", "moment")))]
+    return [CoupledNumber(name, loads.carried, (0,), name == "moment", float(name in ("force", "moment")), linear=True)]
 
 
 def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
@@ -80,4 +87,20 @@ def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
     return found
 
 
-NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {"wheel": of_wheel}
+def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
+    """Its tension; where sheaves hold it that before the first of them, and that behind the last."""
+    found = [CoupledNumber("tension", -loads.multipliers[0], (0,), factor=-1.0)]
+    if len(loads.multipliers) > 1:
+        found.append(CoupledNumber("last_tension", -loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0))
+    return found
+
+
+def of_constant_velocity(loads: CouplingLoads) -> list[CoupledNumber]:
+    """The torque ON `to` about either shaft, of the couple m on the plane that halves the bend: m . m, as m = cos b/2."""
+    m = np.sum([part.m for part in loads.parts], axis=0)
+    return [CoupledNumber("torque", loads.multipliers[0] * np.sum(m * m, axis=-1), (0,), is_moment=True, linear=True)]
+
+
+NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
+    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity,
+}  # fmt: skip

@@ -22,15 +22,18 @@ from heuncli.tree.layout import Layout
 
 @record
 class PartLoad:
-    """Force and moment of one part ON its body b, the opposite ON a, about the place (n_t, 3).
+    """Force and moment of one part ON its body b, about the place there, the opposite ON a, about its place on a.
 
-    f, m (n_t, 3): those for a multiplier of 1. pushed (n_t, 3): the force ON b for one of 1 or of -1; None: none.
+    place, place_a (n_t, 3); f, m, m_a (n_t, 3): those for a multiplier of 1, m about the one, m_a about the other.
+    pushed (n_t, 3): the force ON b for one of 1 or of -1; None: none.
     """
 
     part: CouplingPart
     place: Array
+    place_a: Array
     f: Array
     m: Array
+    m_a: Array
     multiplier: Array
     pushed: Array | None = None
 
@@ -60,11 +63,22 @@ class PartLoad:
         return replace(self, multiplier=multiplier)
 
     @property
+    def moment_on_a(self) -> Array:
+        """Moment ON a about its place there."""
+        found: Array = -self.multiplier[..., None] * self.m_a
+        return found
+
+    @property
+    def on_both(self) -> Iterator[tuple[int, Array, Array, Array]]:
+        """Of b, then of a: the body, the place, the force ON it and the moment about the place."""
+        yield self.part.b, self.place, self.force, self.moment
+        yield self.part.a, self.place_a, -self.force, self.moment_on_a
+
+    @property
     def ends(self) -> tuple[ActionEnd, ActionEnd]:
         """Where it acts on b and on a: it may move over both."""
-        return ActionEnd(self.part.b, self.place, None, apart=True), ActionEnd(
-            self.part.a, self.place, None, apart=True
-        )
+        on_b = ActionEnd(self.part.b, self.place, None, apart=True)
+        return on_b, ActionEnd(self.part.a, self.place_a, None, apart=True)
 
 
 @record
@@ -120,11 +134,10 @@ class CouplingLoads:
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in (part for part in self.parts if part.part.a != part.part.b):
-            for body, sign in ((part.part.b, 1.0), (part.part.a, -1.0)):
-                at, force, moment = found.get(body, (part.place, np.zeros_like(part.force), np.zeros_like(part.moment)))
-                moment = moment + sign * (part.moment + cross_rows(part.place - at, part.force))
-                found[body] = at, force + sign * part.force, moment
+        for part in sorted(self.parts, key=lambda own: not own.part.lies):  # of sheaves their centres come first
+            for body, place, own, turning in part.on_both:
+                at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
+                found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
         return found
 
 
@@ -156,16 +169,17 @@ def _part_loads(
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
-        f, m, Q = (recovered.parts[name][:, k] for name in ("f", "m", "Q"))
+        f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
         pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
-        yield PartLoad(part, Q, f, m, multiplier, pushed)
+        m_a = m + cross_rows(Q - on_a, f)
+        yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
     """What they exert, an action a part."""
     return [
-        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment)
+        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
-        if part.part.a != part.part.b
+        if not part.part.lies
     ]

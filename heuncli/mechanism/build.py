@@ -154,7 +154,10 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
 
 def coupled(spec: m.Spec) -> set[str]:
     """The joints whose coordinates are coupled."""
-    return {joint for coupling in spec.couplings.values() for joint in coupling.joints}
+    ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
+    gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
+    found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
+    return found | {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(

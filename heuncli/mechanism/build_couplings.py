@@ -144,7 +144,12 @@ def wheel(given: c.Wheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
     return disc_rows(ends, unit(given.axis), given.radius, ways)
 
 
+def at_start(given: c.Rope | c.ConstantVelocity, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """None yet: what they hold is found where the bodies stand (tree/couplings_at_start.py)."""
+    return ()
+
+
 MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
     "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam,
-    "wheel": wheel,
+    "wheel": wheel, "rope": at_start, "cv": at_start,
 }  # fmt: skip

@@ -20,7 +20,8 @@ GROUND = -1
 Place = Array | tuple[float, float, float]
 NOWHERE = (0.0, 0.0, 0.0)
 CouplingKind = Literal[
-    "guide", "dot", "rod", "turn", "mesh", "cam", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls"
+    "guide", "dot", "rod", "turn", "mesh", "cam", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls",
+    "strand", "arc", "wound",
 ]  # fmt: skip
 
 
@@ -54,7 +55,9 @@ class CouplingPart:
     p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates:
     those that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's.
     apart: of a mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work,
-    whatever moves, and stands in the axes of c, too. radius: of a wheel.
+    whatever moves, and stands in the axes of c, too. radius: of a wheel; of what of a rope lies on
+    a sheave, below zero where it runs round clockwise about e. strand: of that the place among the row's parts of the
+    strand that arrives. other_axis: of a strand between two sheaves the axis of b, parallel to e.
     """
 
     kind: CouplingKind
@@ -70,6 +73,8 @@ class CouplingPart:
     apart: Array | tuple[float, float, float] = NOWHERE
     cam: CamShape | None = None
     radius: float = 0.0
+    strand: int = 0
+    other_axis: Array | tuple[float, float, float] = NOWHERE
 
     @property
     def holds_speed(self) -> bool:
@@ -87,6 +92,11 @@ class CouplingPart:
         return self.kind in ("dot", "turn")
 
     @property
+    def lies(self) -> bool:
+        """Whether it is of a rope what lies on a sheave, and loads nothing."""
+        return self.kind in ("arc", "wound")
+
+    @property
     def places(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it looks at them, body axes."""
         if self.is_couple:
@@ -100,7 +110,7 @@ class CouplingPart:
     @property
     def bodies(self) -> tuple[int, ...]:
         """All bodies that it looks at."""
-        return (self.a, self.b, self.c) if self.kind in ("mesh", "cam") else (self.a, self.b)
+        return (self.a, self.b, self.c) if self.kind in ("mesh", "cam", "wound") else (self.a, self.b)
 
 
 @record

@@ -149,26 +149,15 @@ STOPS = TablePlan(
     lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
     _stop_note,
 )
+COUPLED = (
+    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
+    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
+)
 COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    (
-        "normal",
-        "friction",
-        "along",
-        "aside",
-        "grip",
-        "force",
-        "moment",
-        "contact",
-        "pressure_angle",
-        "radial",
-        "axial",
-        "torque",
-        "tight",
-        "slack",
-    ),  # fmt: skip
+    COUPLED,
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(

@@ -154,4 +154,55 @@ class Cam(NamedTuple):
         return self.shaft, self.follower
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel  # a union of the classes here
+class Passage(NamedTuple):
+    """Where a rope passes: a point of a body, radius 0, or a sheave about it.
+
+    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the shortest way;
+    grips: the rope does not slip on the sheave.
+    """
+
+    end: End
+    radius: float = 0.0
+    axis: tuple[float, float, float] | None = None
+    side: Literal["over", "under", "left", "right"] | None = None
+    grips: bool = False
+
+
+class Rope(NamedTuple):
+    """A rope without mass through points and over sheaves; length [m], None: as assembled.
+
+    tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
+    """
+
+    through: tuple[Passage, ...]
+    length: float | None = None
+    tension_only: bool = False
+    restitution: float | None = None
+    type: Literal["rope"] = "rope"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: it couples bodies."""
+        return ()
+
+    @property
+    def gripped(self) -> frozenset[str]:
+        """The bodies with sheaves on which it does not slip."""
+        return frozenset(x.end.body for x in self.through if x.grips)
+
+
+class ConstantVelocity(NamedTuple):
+    """What makes of a ball a constant-velocity joint: shafts along axis in `from`, to_axis in `to`, turn alike."""
+
+    joint: str
+    axis: tuple[float, float, float]
+    to_axis: tuple[float, float, float]
+    type: Literal["cv"] = "cv"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The ball."""
+        return (self.joint,)
+
+
+Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel | Rope | ConstantVelocity  # a union of the classes here

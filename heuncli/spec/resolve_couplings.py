@@ -5,8 +5,8 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Protocol
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import TYPES
@@ -32,7 +32,8 @@ class Following(Protocol):
 
 def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
     """The coupling that an entry means; name: of it, for the places of its expressions."""
-    return MEANINGS[entry.type](by, name, entry)
+    found: c.Coupling = MEANINGS[entry.type](by, name, entry)
+    return found
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
@@ -97,7 +98,8 @@ def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Diff
 
 def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
     """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
-    joint, _, quantity = word.partition(".")
+    joint, _, named = word.partition(".")
+    quantity: Any = named
     return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
 
 
@@ -110,4 +112,26 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     )  # fmt: skip
 
 
-MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}
+def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
+    """A rope."""
+    through = tuple(passage(by, given) for given in entry.through)
+    return c.Rope(through, entry.length, entry.tension_only, entry.restitution)
+
+
+def passage(by: Following, given: f.PassageEntry) -> c.Passage:
+    """Where a rope passes."""
+    written = given.point if given.point is not None else given.sheave
+    assert written is not None
+    end = by.end(written)
+    return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
+
+
+def constant_velocity(by: Following, name: str, entry: f.ConstantVelocityEntry) -> c.ConstantVelocity:
+    """Two shafts in a ball that turn alike."""
+    return c.ConstantVelocity(entry.joint, entry.axis, entry.axis if entry.to_axis is None else entry.to_axis)
+
+
+MEANINGS: dict[str, Callable[..., c.Coupling]] = {
+    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam, "rope": rope,
+    "cv": constant_velocity,
+}  # fmt: skip

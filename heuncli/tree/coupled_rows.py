@@ -16,7 +16,7 @@ KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
     "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE,
     "ball_touches": kernel.BALL_TOUCHES, "ball_rolls": kernel.BALL_ROLLS,
-    "cam": kernel.CAM,
+    "cam": kernel.CAM, "strand": kernel.STRAND, "arc": kernel.ARC, "wound": kernel.WOUND,
 }  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree
@@ -24,9 +24,9 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 
 def part_row(
-    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+    part: CouplingPart, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
 ) -> ClosureRow:
-    """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
+    """A condition of two bodies as the kernel's part; first: its row's first; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
     return ClosureRow(
@@ -45,6 +45,7 @@ def part_row(
         ratio=ratio,
         freedom_b=freedom_b,
         ratio_b=ratio_b,
+        part=first + part.strand,
     )
 
 

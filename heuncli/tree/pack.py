@@ -352,8 +352,9 @@ class _Builder:
                 self.row_joint.append(owner)
                 length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
                 self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
+                first = len(self.part_rows)
                 for part in row.parts:
-                    made = part_row(part, self.in_tree, self.relative, freedoms)
+                    made = part_row(part, first, self.in_tree, self.relative, freedoms)
                     self.part_rows.append(with_lift(made, part, len(self.pieces), self.relative))
                     if part.cam is not None:
                         self._put_path(part.cam.lift)

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec import format_couplings as f
 from heuncli.spec.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
@@ -18,7 +19,8 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        for i, word in enumerate(coupling.of):
+        of = [] if isinstance(coupling, f.RopeEntry | f.ConstantVelocityEntry) else coupling.of
+        for i, word in enumerate(of):
             path = ("couplings", name, "of", i)
             joint, _, quantity = word.partition(".")
             if joint not in joints:
@@ -30,7 +32,7 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
             elif kind is not None and quantity and quantity not in kind.coordinates:
                 yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
-            if word in coupling.of[:i]:
+            if word in of[:i]:
                 yield Violation(path, f"{word} is coupled to itself", "name another joint")
 
 
@@ -99,3 +101,68 @@ def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
             if factor == 0.0:
                 hint = "leave out the joint, or give its factor"
                 yield Violation(("couplings", name, "factors", i), "a factor of zero couples nothing", hint)
+
+
+@rule("rope-way")
+def rope_way(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope has two places at least; each is a point, or a sheave with a radius and perhaps an axis and a side."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name, "through")
+        if len(rope.through) < 2:
+            yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
+        for i, place in enumerate(rope.through):
+            for message, hint in wrong_places(place):
+                yield Violation((*path, i), message, hint)
+
+
+def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
+    """What is wrong with one place of a rope, each with a hint."""
+    if (place.point is None) == (place.sheave is None):
+        yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
+    elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
+        yield "a sheave without a radius", "radius: 0.3; a rope slides through a plain point, too: body.point"
+    elif place.point is not None:
+        keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
+        if keys:
+            yield f"{keys[0]} of a plain point", "a sheave is {sheave: body.point, radius: 0.3}"
+
+
+@rule("rope-bounds")
+def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope's length is positive and known; what catches pulls alone, with a restitution from 0 to 1."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name)
+        if rope.length is not None and not rope.length > 0.0:
+            yield Violation((*path, "length"), f"a rope of length {rope.length:g} m", "leave it out: as assembled")
+        if rope.length is not None and any(place.slip == "none" for place in rope.through):
+            message = "the length of a rope that is held on a sheave"
+            yield Violation((*path, "length"), message, "leave it out: what is wound on the sheave is not told, either")
+        if rope.restitution is None:
+            continue
+        if not 0.0 <= rope.restitution <= 1.0:
+            message = f"restitution {rope.restitution:g} is not between 0 and 1"
+            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: it rebounds as fast")
+        if not rope.tension_only:
+            message = "restitution of a rope that holds both ways, and so is never struck"
+            yield Violation((*path, "restitution"), message, "tension_only: true")
+
+
+@rule("cv-joint")
+def cv_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """Shafts that turn alike meet in a ball, in space."""
+    joints = draft.names.joints
+    for name, own in draft.document.couplings.items():
+        if not isinstance(own, f.ConstantVelocityEntry):
+            continue
+        path = ("couplings", name, "joint")
+        if own.joint not in joints:
+            yield Violation(path, f"'{own.joint}' is not a joint", did_you_mean(own.joint, joints, "joints") or "")
+        elif joints[own.joint] != "ball":
+            message = f"{own.joint} is a {joints[own.joint]}: a constant-velocity joint is made of a ball"
+            yield Violation(path, message, "type: ball; the coupling holds its turn about the shafts")
+        elif draft.document.head.space == "planar":
+            yield Violation(path, "shafts that turn alike have no bend in a plane", "a pin, or space: spatial")

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator
 
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
+from heuncli.spec import format_couplings as fc
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, mapping
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -27,6 +28,11 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, blow in document.impulses.items():
         if blow.on is not None:
             yield ("impulses", name, "on"), blow.on
+    for name, coupling in document.couplings.items():
+        for i, place in enumerate(coupling.through if isinstance(coupling, fc.RopeEntry) else ()):
+            for key, end in (("point", place.point), ("sheave", place.sheave)):
+                if end is not None:
+                    yield ("couplings", name, "through", i, key), end
     for name, wheel in document.rolling.items():
         yield ("rolling", name, "wheel"), wheel.wheel
         yield ("rolling", name, "on"), wheel.on
@@ -61,7 +67,7 @@ def ground_end(about: str) -> EndEntry:
 def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     """Every mention of a body: path, name, whether the ground may stand there."""
     for path, end in ends(draft):
-        may_be_ground = path[0] in ("joints", "rolling", "foundation", "sections") or path[-1] in ("from", "to")
+        may_be_ground = path[0] in STANDING or path[-1] in ("from", "to")
         yield path, end.body, may_be_ground
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
@@ -73,6 +79,7 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
             yield ("impulses", name, "body"), blow.body, False
 
 
+STANDING = ("joints", "couplings", "rolling", "foundation", "sections")  # where the ground may be named
 FIXED = frozenset({"world", "base", "frame", "earth", "fixed", "origin", "inertial"})  # the ground, elsewhere
 BLOCK_OF = {GROUND: GROUND}  # of points: where they stand
 

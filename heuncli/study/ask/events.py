@@ -221,7 +221,7 @@ def told(study: Study) -> Study:
     """The study with its events in the results, and a sentence on how it ended."""
     results, conditions = study.results, study.spec.analysis.conditions
     if EVENTS in study.options.reports:
-        events = {c.name: block(c, study.changes[c.name]) for c in conditions}
+        events = {c.name: block(c.text, study.changes[c.name]) for c in conditions}
         for name, stop in study.spec.latches.items():
             if name in study.changes:
                 events[name] = block(f"{stop.joint}.{stop.quantity} held", study.changes[name])

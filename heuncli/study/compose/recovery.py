@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
@@ -250,6 +251,7 @@ def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Seen
     """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
     if compared is None:  # else it was asked before
         require_solvable(setup.scene, recovered)
+        require_on_sheaves(setup.scene.layout, recovered)
         require_directions(setup.scene, recovered)
     found = Recovery(setup, recovered, least_norm, compared=compared)
     if setup.scene.mechanism.rubbing and found.decided is not None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.diagnosis.off_sheaves import slanting
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
@@ -39,6 +40,7 @@ def warnings(
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
         *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, recovery, joints)),
         *singular,
+        *slanting(setup.scene.layout, recovery.recovered),
         *(pushing(recovery) if setup.scene.mechanism.couplings else ()),
     )
 
