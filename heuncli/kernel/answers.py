@@ -155,7 +155,7 @@ def judge_closures(scene: cython.pointer[Scene], t: cython.double) -> cython.voi
         scene.pivot_recovered = order_all(scene, 0.0)
         scene.pivot_recovered *= scene.pivot_recovered
     measure_answers(scene)
-    scene.residual = unmet(scene)
+    scene.residual = unmet(scene, scene.load_size)
 
 
 def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cython.Py_ssize_t) -> cython.bint:

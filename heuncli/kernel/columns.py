@@ -19,7 +19,7 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, add_scaled, scaled
     from heuncli.kernel.closures import measure_rows, residual_of, size_of_answer
-    from heuncli.kernel.orthogonal import answer_of_row
+    from heuncli.kernel.orthogonal import answer_of_row, size_of_multipliers
     from heuncli.kernel.response import answer_applied, configure
     from heuncli.kernel.scene import APART, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
@@ -198,7 +198,8 @@ def answer_blow(
     apply_column(scene, load)
     answer_applied(scene, True)
     at = put_column(scene, out, 0, True)
-    out[at] = unmet(scene)
+    # what stands still beside a row that jumps does so to the rounding of what holds it
+    out[at] = unmet(scene, scene.load_size + size_of_multipliers(scene))
     scene.gravity = gravity
 
 
@@ -210,14 +211,17 @@ def measure_answers(scene: cython.pointer[Scene]) -> cython.void:
         row.answer = sqrt(answer_of_row(scene, row))
 
 
-def unmet(scene: cython.pointer[Scene]) -> cython.double:
-    """The largest |J V + gamma| of all closed rows at the answer found, of the terms it is the sum of."""
+def unmet(scene: cython.pointer[Scene], pushed: cython.double) -> cython.double:
+    """The largest |J V + gamma| of all closed rows at the answer found, of the terms it is the sum of.
+
+    pushed: what the freedoms would answer without these rows, in the measure of M.
+    """
     r: cython.Py_ssize_t
     found: cython.double = 0.0
     residual: cython.double
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        size: cython.double = size_of_answer(scene, row) + row.answer * scene.load_size
+        size: cython.double = size_of_answer(scene, row) + row.answer * pushed
         residual = residual_of(scene, row) if row.mode != APART else 0.0
         if not residual <= found * size:
             found = residual / size

@@ -25,8 +25,8 @@ if not cython.compiled:
         ROLLS_ASIDE,
         Carried,
         Closure,
-        Moving,
         Scene,
+        VectorRate,
         WheelContact,
     )
     from heuncli.kernel.shadow import cython
@@ -57,13 +57,13 @@ def is_of_speed(row: cython.pointer[Closure]) -> cython.bint:
 
 def wheel_contact(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> WheelContact:
     """Where the wheel touches the plane, and the direction that its row looks along."""
-    n: Moving = direction_moving(scene, row.a, row.e)
-    C: Moving = centre_moving(scene, row)
+    n: VectorRate = direction_moving(scene, row.a, row.e)
+    C: VectorRate = centre_moving(scene, row)
     if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
         return WheelContact(along_moving(C, -row.radius, n), direction_moving(scene, row.a, row.g))
-    k: Moving = direction_moving(scene, row.b, row.g)
-    t: Moving = unit_moving(cross_moving(k, n))
-    c: Moving = along_moving(C, -row.radius, cross_moving(t, k))
+    k: VectorRate = direction_moving(scene, row.b, row.g)
+    t: VectorRate = unit_moving(cross_moving(k, n))
+    c: VectorRate = along_moving(C, -row.radius, cross_moving(t, k))
     if row.kind == ROLLS:
         return WheelContact(c, t)
     if row.kind == ROLLS_ASIDE:
@@ -71,34 +71,34 @@ def wheel_contact(scene: cython.pointer[Scene], row: cython.pointer[Closure]) ->
     return WheelContact(c, n)
 
 
-def direction_moving(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Moving:
+def direction_moving(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> VectorRate:
     """A direction fixed in a body, world axes, and its rate."""
     e: Vec3 = direction_of(scene, body, a)
     if body < 0:
-        return Moving(e, Vec3(0.0, 0.0, 0.0))
-    return Moving(e, cross(scene.bodies[body].omega, e))
+        return VectorRate(e, Vec3(0.0, 0.0, 0.0))
+    return VectorRate(e, cross(scene.bodies[body].omega, e))
 
 
-def centre_moving(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Moving:
+def centre_moving(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> VectorRate:
     """The wheel's centre and its velocity."""
     C: Vec3 = place_of(scene, row.b, row.q)
-    return Moving(C, carried(scene, row.b, C).v)
+    return VectorRate(C, carried(scene, row.b, C).v)
 
 
-def cross_moving(a: Moving, b: Moving) -> Moving:
+def cross_moving(a: VectorRate, b: VectorRate) -> VectorRate:
     """a x b."""
-    return Moving(cross(a.x, b.x), add(cross(a.rate, b.x), cross(a.x, b.rate)))
+    return VectorRate(cross(a.x, b.x), add(cross(a.rate, b.x), cross(a.x, b.rate)))
 
 
-def along_moving(a: Moving, s: cython.double, b: Moving) -> Moving:
+def along_moving(a: VectorRate, s: cython.double, b: VectorRate) -> VectorRate:
     """a + s b."""
-    return Moving(add_scaled(a.x, s, b.x), add_scaled(a.rate, s, b.rate))
+    return VectorRate(add_scaled(a.x, s, b.x), add_scaled(a.rate, s, b.rate))
 
 
-def unit_moving(w: Moving) -> Moving:
+def unit_moving(w: VectorRate) -> VectorRate:
     """w / |w|; no direction where a rim lies flat on its plane."""
     size: cython.double = norm(w.x)
     if size == 0.0:
-        return Moving(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
+        return VectorRate(Vec3(0.0, 0.0, 0.0), Vec3(0.0, 0.0, 0.0))
     u: Vec3 = scaled(1.0 / size, w.x)
-    return Moving(u, scaled(1.0 / size, add_scaled(w.rate, -dot(u, w.rate), u)))
+    return VectorRate(u, scaled(1.0 / size, add_scaled(w.rate, -dot(u, w.rate), u)))

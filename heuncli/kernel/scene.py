@@ -517,32 +517,32 @@ class StrandRate(Value):
     bend: float
 
 
-class Moving(Value):
+class VectorRate(Value):
     """A vector and its rate."""
 
     x: Vec3
     rate: Vec3
 
 
-class MovingTangent(Value):
+class VectorRateTangent(Value):
     """A vector with its rate, and what both change by along a direction of the state."""
 
-    own: Moving
-    change: Moving
+    own: VectorRate
+    change: VectorRate
 
 
 class WheelContact(Value):
     """Where a wheel touches its plane, and the direction that a row of it looks along."""
 
-    c: Moving
-    e: Moving
+    c: VectorRate
+    e: VectorRate
 
 
 class WheelTangent(Value):
     """The same with what it changes by along a direction of the state."""
 
-    c: MovingTangent
-    e: MovingTangent
+    c: VectorRateTangent
+    e: VectorRateTangent
 
 
 class Cam(Value):

@@ -23,11 +23,11 @@ if not cython.compiled:
         ROLLS_ASIDE,
         Closure,
         MotionTangent,
-        Moving,
-        MovingTangent,
         PointMotion,
         RowTangent,
         Scene,
+        VectorRate,
+        VectorRateTangent,
         WheelTangent,
     )
     from heuncli.kernel.shadow import cython
@@ -38,8 +38,8 @@ if not cython.compiled:
 def rolling_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
     """Of one row: its place and unit load, its rate and its acceleration J Vdot + gamma."""
     at: WheelTangent = wheel_along(scene, row)
-    c: Moving = at.c.own
-    e: Moving = at.e.own
+    c: VectorRate = at.c.own
+    e: VectorRate = at.e.own
     ob: Vec3 = omega_of(scene, row.b)
     oa: Vec3 = omega_of(scene, row.a)
     vb: Vec3 = carried(scene, row.b, c.x).v
@@ -67,14 +67,14 @@ def slid_along(domega: Vec3, omega: Vec3, v: Vec3, dv: Vec3) -> Vec3:
 
 def wheel_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> WheelTangent:
     """What the contact and the direction that the row looks along change by."""
-    n: MovingTangent = direction_along(scene, row.a, row.e)
+    n: VectorRateTangent = direction_along(scene, row.a, row.e)
     centre: PointMotion = point_along(scene, row.b, row.q)
-    C: MovingTangent = MovingTangent(centre_moving(scene, row), Moving(centre.x, centre.v))
+    C: VectorRateTangent = VectorRateTangent(centre_moving(scene, row), VectorRate(centre.x, centre.v))
     if row.kind == BALL_TOUCHES or row.kind == BALL_ROLLS:
         return WheelTangent(sum_along(C, -row.radius, n), direction_along(scene, row.a, row.g))
-    k: MovingTangent = direction_along(scene, row.b, row.g)
-    t: MovingTangent = unit_along(cross_along(k, n))
-    c: MovingTangent = sum_along(C, -row.radius, cross_along(t, k))
+    k: VectorRateTangent = direction_along(scene, row.b, row.g)
+    t: VectorRateTangent = unit_along(cross_along(k, n))
+    c: VectorRateTangent = sum_along(C, -row.radius, cross_along(t, k))
     if row.kind == ROLLS:
         return WheelTangent(c, t)
     if row.kind == ROLLS_ASIDE:
@@ -82,31 +82,31 @@ def wheel_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> W
     return WheelTangent(c, n)
 
 
-def direction_along(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> MovingTangent:
+def direction_along(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> VectorRateTangent:
     """Of a direction fixed in a body: e by turn x e, its rate omega x e by d omega x e + omega x de."""
-    own: Moving = direction_moving(scene, body, a)
+    own: VectorRate = direction_moving(scene, body, a)
     de: Vec3 = swung(scene, body, own.x)
     rate: Vec3 = slid_along(omega_along(scene, body), omega_of(scene, body), own.x, de)
-    return MovingTangent(own, Moving(de, rate))
+    return VectorRateTangent(own, VectorRate(de, rate))
 
 
-def cross_along(a: MovingTangent, b: MovingTangent) -> MovingTangent:
+def cross_along(a: VectorRateTangent, b: VectorRateTangent) -> VectorRateTangent:
     """Of a x b."""
-    left: Moving = cross_moving(a.change, b.own)
-    return MovingTangent(cross_moving(a.own, b.own), along_moving(left, 1.0, cross_moving(a.own, b.change)))
+    left: VectorRate = cross_moving(a.change, b.own)
+    return VectorRateTangent(cross_moving(a.own, b.own), along_moving(left, 1.0, cross_moving(a.own, b.change)))
 
 
-def sum_along(a: MovingTangent, s: cython.double, b: MovingTangent) -> MovingTangent:
+def sum_along(a: VectorRateTangent, s: cython.double, b: VectorRateTangent) -> VectorRateTangent:
     """Of a + s b."""
-    return MovingTangent(along_moving(a.own, s, b.own), along_moving(a.change, s, b.change))
+    return VectorRateTangent(along_moving(a.own, s, b.own), along_moving(a.change, s, b.change))
 
 
-def unit_along(w: MovingTangent) -> MovingTangent:
+def unit_along(w: VectorRateTangent) -> VectorRateTangent:
     """Of u = w / |w|: |w| du = dw - (u . dw) u, and |w| u' + |w|' u = w' once more."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     size: cython.double = norm(w.own.x)
     if size == 0.0:
-        return MovingTangent(Moving(zero, zero), Moving(zero, zero))
+        return VectorRateTangent(VectorRate(zero, zero), VectorRate(zero, zero))
     s: cython.double = 1.0 / size
     u: Vec3 = scaled(s, w.own.x)
     grows: cython.double = dot(u, w.own.rate)
@@ -115,4 +115,4 @@ def unit_along(w: MovingTangent) -> MovingTangent:
     du: Vec3 = scaled(s, add_scaled(w.change.x, -longer, u))
     growing: cython.double = dot(du, w.own.rate) + dot(u, w.change.rate)
     drate: Vec3 = add_scaled(add_scaled(w.change.rate, -growing, u), -grows, du)
-    return MovingTangent(Moving(u, rate), Moving(du, scaled(s, add_scaled(drate, -longer, rate))))
+    return VectorRateTangent(VectorRate(u, rate), VectorRate(du, scaled(s, add_scaled(drate, -longer, rate))))

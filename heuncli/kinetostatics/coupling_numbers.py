@@ -13,7 +13,7 @@ from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.spec.couplings import Wheel
+from heuncli.spec.couplings import RollingWheel
 
 
 @record
@@ -68,7 +68,7 @@ def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
     friction = sqrt(along^2 + aside^2),  force = sqrt(normal^2 + friction^2),  grip = coefficient normal - friction
     """
     given = loads.coupling.given
-    assert isinstance(given, Wheel)
+    assert isinstance(given, RollingWheel)
     (_, *rolling), every = loads.coupling.rows, tuple(range(len(loads.multipliers)))
     normal = loads.multipliers[0]
     ways = {row.parts[0].kind: values for row, values in zip(rolling, loads.multipliers[1:], strict=True)}

@@ -15,7 +15,7 @@ from heuncli.mechanism.gearing import gear_row
 from heuncli.mechanism.model import GROUND, Body, Joint, PairLoad
 from heuncli.mechanism.strands import belt_row, pretension_of
 from heuncli.mechanism.threads import screw_row
-from heuncli.mechanism.wheels import Ends, ball_rows, disc_rows
+from heuncli.mechanism.wheels import WheelEnds, ball_rows, disc_rows
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import couplings as c
@@ -134,10 +134,10 @@ def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
     return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
 
 
-def wheel(given: c.Wheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def wheel(given: c.RollingWheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
     """A wheel on its plane."""
     (b, q), (a, p) = drawn.place(given.wheel), drawn.place(given.on)
-    ends: Ends = {"a": a, "b": b, "p": p, "q": q, "e": unit(given.normal)}
+    ends: WheelEnds = {"a": a, "b": b, "p": p, "q": q, "e": unit(given.normal)}
     if given.axis is None:
         return ball_rows(ends, given.radius)
     ways = {"along": not given.slides, "aside": drawn.spec.space != "planar"}  # in the plane nothing goes aside

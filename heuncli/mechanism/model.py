@@ -164,8 +164,8 @@ class JointLoad:
 class Bushing:
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
-    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in b
-    that agree with them where it is not turned.
+    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in
+    b that agree with them where it is not turned.
     """
 
     name: str

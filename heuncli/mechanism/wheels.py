@@ -21,7 +21,7 @@ from heuncli.shapes.rotations import perpendicular
 SPEEDS: Mapping[str, Literal["rolls", "rolls_aside"]] = MappingProxyType({"along": "rolls", "aside": "rolls_aside"})
 
 
-class Ends(TypedDict):
+class WheelEnds(TypedDict):
     """What all parts of a wheel have in common."""
 
     a: int
@@ -31,13 +31,13 @@ class Ends(TypedDict):
     e: Place
 
 
-def disc_rows(ends: Ends, axle: Array, radius: float, ways: Mapping[str, bool]) -> tuple[CoupledRow, ...]:
+def disc_rows(ends: WheelEnds, axle: Array, radius: float, ways: Mapping[str, bool]) -> tuple[CoupledRow, ...]:
     """The rows of a thin disc; ways: in which it does not slip."""
     kinds: list[CouplingKind] = ["touches", *(kind for way, kind in SPEEDS.items() if ways[way])]
     return tuple(row_of(CouplingPart(kind, g=axle, radius=radius, **ends)) for kind in kinds)
 
 
-def ball_rows(ends: Ends, radius: float) -> tuple[CoupledRow, ...]:
+def ball_rows(ends: WheelEnds, radius: float) -> tuple[CoupledRow, ...]:
     """The rows of a sphere, whose lowest point touches the plane and stands still on it."""
     touches = CouplingPart("ball_touches", g=ends["e"], radius=radius, **ends)
     rolls = (CouplingPart("ball_rolls", g=g, radius=radius, **ends) for g in perpendicular(np.asarray(ends["e"])))

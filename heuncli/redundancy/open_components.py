@@ -108,7 +108,7 @@ def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> Non
         for name in parts.keys() & own.keys():
             own[name] = opened(own[name], parts[name])
     for beside in ("radial", "axial", "normal", "torque", "tight", "slack"):
-        if beside in block and beside not in parts:
+        if beside in block and beside not in parts and np.any(block[beside]):
             block[beside], parts[beside] = opened(block[beside], parts[loads.carries]), parts[loads.carries]
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]

@@ -40,7 +40,7 @@ class Ratio(NamedTuple):
         return joints_of(self.terms)
 
 
-class Wheel(NamedTuple):
+class RollingWheel(NamedTuple):
     """A wheel that rolls on a plane.
 
     wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
@@ -205,4 +205,6 @@ class ConstantVelocity(NamedTuple):
         return (self.joint,)
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Cam | Wheel | Rope | ConstantVelocity  # a union of the classes here
+Coupling = (  # a union of the classes here
+    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope | ConstantVelocity
+)

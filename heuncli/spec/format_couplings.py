@@ -106,7 +106,9 @@ class ConstantVelocityEntry(Entry):
     to_axis: Direction | None = None
 
 
-CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
+CouplingEntry = (
+    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
+)
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
     "cam": CamEntry, "rope": RopeEntry, "cv": ConstantVelocityEntry,

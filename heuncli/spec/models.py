@@ -231,7 +231,7 @@ class Spring(NamedTuple):
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s; or its torque [N m]."""
+    """A spring and damper about a joint's axis: N m/rad, relaxed angle [rad], N m s; or its torque [N m]."""
 
     joint: str
     stiffness: float
@@ -267,7 +267,7 @@ class Elastic(Generic[V]):
 
 
 class Bushing(NamedTuple):
-    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: those in that of `to`."""
+    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: in that of `to`."""
 
     from_: End
     to: End

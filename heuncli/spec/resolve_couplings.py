@@ -42,10 +42,10 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
 
 
-def wheel_meant(by: Following, entry: RollingEntry) -> c.Wheel:
+def wheel_meant(by: Following, entry: RollingEntry) -> c.RollingWheel:
     """The wheel that an entry of `rolling` means; in the plane all are round about z."""
     axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
-    return c.Wheel(
+    return c.RollingWheel(
         by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
         entry.normal, entry.friction, entry.slides is not None, entry.held,
     )  # fmt: skip

@@ -42,7 +42,7 @@ def test_it_turns_to_and_fro_by_any_angle() -> None:
 def test_it_is_damped_along_its_axes() -> None:
     """m x'' = f0 - k x - d x' in each of three directions, which orientation turns."""
     found = solved(wheel(
-        "stiffness: [50, 8, 200], damping: [2, 8, 0], preload: [3, 0, 0], orientation: {axis: [0, 0, 1], angle: 90 deg}",
+        "stiffness: [50, 8, 200], damping: [2, 8, 0], preload: [3, 0, 0], orientation: {axis: [0, 0, 1], angle: pi/2}",
         "velocity: [0, 0.4, 0]",
     ))  # fmt: skip
     t, m, k, d = found.time, 2.0, 50.0, 2.0

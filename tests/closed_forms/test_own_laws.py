@@ -1,4 +1,4 @@
-"""Springs, dampers and motors by laws of what they act between; brakes whose size runs in time: closed forms, refusals."""
+"""Springs, dampers, motors by laws of what they act between; brakes of a size in time: closed forms, refusals."""
 
 from __future__ import annotations
 

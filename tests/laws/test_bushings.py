@@ -12,7 +12,8 @@ from tests.oracle.turns import about, attitude, random_rotation
 from tests.shared.scenes import near, solved
 
 ENGINE = {
-    "mass": 4.0, "center": [0.1, 0.02, 0.05], "inertia": [0.12, 0.15, 0.09], "points": {"c": [0, 0, 0], "d": [0.2, 0, 0]},
+    "mass": 4.0, "center": [0.1, 0.02, 0.05], "inertia": [0.12, 0.15, 0.09],
+    "points": {"c": [0, 0, 0], "d": [0.2, 0, 0]},
     "position": [0.01, 0.02, 0], "orientation": {"matrix": about(np.array([0.6, 0.0, 0.8]), 0.7).tolist()},
 }  # fmt: skip
 ROTOR = {

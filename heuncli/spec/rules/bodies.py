@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes, tensor
@@ -142,7 +143,7 @@ def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
         keys += ["torque", "force"]
     for key in keys:
         value = getattr(load, key, None)
-        if isinstance(value, f.ShiftLaws | f.TurnLaws):
+        if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
             value = (value.x, value.y, value.z)
         for part in value if isinstance(value, tuple) else (value,):
             yield key, getattr(part, "constant", part)
@@ -273,7 +274,7 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
             if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
     for name, load in draft.document.forces.items():
-        for key in ("orientation", "to_orientation") if isinstance(load, f.BushingEntry) else ():
+        for key in ("orientation", "to_orientation") if isinstance(load, fe.BushingEntry) else ():
             if getattr(load, key) is not None:
                 yield ("forces", name, key), getattr(load, key)
 

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format_couplings as f
+from heuncli.spec.format import FrictionEntry
 from heuncli.spec.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
@@ -43,7 +44,7 @@ def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts = COUNTS.get(coupling.type)
         if counts is not None and len(coupling.of) not in counts:
             some = " or ".join(map(str, counts))
-            message = f"{len(coupling.of)} joints are named"
+            message = f"{', '.join(coupling.of) or 'nothing'} is named"
             yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
 
 
@@ -60,7 +61,9 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
             hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
-            yield Violation((*path, "teeth"), f"teeth {gear.teeth} are no pair of gears", hint)
+            yield Violation(
+                (*path, "teeth"), f"teeth {', '.join(f'{z:g}' for z in gear.teeth)} are no pair of gears", hint
+            )
         if gear.internal and gear.teeth is None and gear.ratio is None:
             yield Violation(
                 (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
@@ -69,6 +72,28 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             angle = math.degrees(getattr(gear, key))
             if not (0.0 if key == "pressure_angle" else -most) <= angle <= most:
                 yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
+
+
+@rule("flanks-rub")
+def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction by what presses knows no radial part of tooth forces, which presses, too."""
+    forces = draft.document.forces.values()
+    if not any(isinstance(own, FrictionEntry) and own.coefficient is not None for own in forces):
+        return
+    for name, gear in draft.document.couplings.items():
+        if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
+            message = "friction by a coefficient does not know yet what teeth push apart with"
+            hint = "set pressure_angle: 0 to leave that out, or give the friction as a torque"
+            yield Violation(("couplings", name), message, hint, key=True)
+
+
+@rule("belt-name")
+def belt_name(draft: DraftDocument) -> Iterator[Violation]:
+    """The pretension of a belt is a load by the belt's name."""
+    for name, belt in draft.document.couplings.items():
+        if isinstance(belt, BeltEntry) and name in draft.names.entries["forces"]:
+            message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
+            yield Violation(("couplings", name), message, "give one of them another name", key=True)
 
 
 @rule("coupling-sizes")
@@ -80,7 +105,11 @@ def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
         if isinstance(own, BeltEntry):
             if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
-                yield Violation((*path, "radii"), f"{own.radii} are no radii of two pulleys", "two lengths above zero")
+                yield Violation(
+                    (*path, "radii"),
+                    f"{', '.join(f'{r:g}' for r in own.radii)} m are no radii of two pulleys",
+                    "two lengths above zero",
+                )
             if own.pretension < 0.0:
                 yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
         if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes
@@ -47,7 +48,7 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
                 given = getattr(load, key, None)
                 vector = tuple(x.constant for x in given or ())
                 yield from _out_of_plane(("forces", name, key), vector, LOADS[load.type])
-        elif isinstance(load, f.BushingEntry):
+        elif isinstance(load, fe.BushingEntry):
             yield from _bushing(("forces", name), load)
     for name, blow in draft.document.impulses.items():
         for key, forbidden in BLOWS.items():
@@ -63,7 +64,7 @@ def _out_of_plane(path: Path_, vector: tuple[float | None, ...], forbidden: tupl
             yield Violation((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
 
 
-def _bushing(path: Path_, load: f.BushingEntry) -> Iterator[Violation]:
+def _bushing(path: Path_, load: fe.BushingEntry) -> Iterator[Violation]:
     """One of its axes is the z axis, and what it is preloaded by lies in the plane."""
     for key in ("orientation", "to_orientation"):
         given = getattr(load, key)

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterator
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
 from heuncli.spec import format_couplings as fc
+from heuncli.spec import format_elastic as fe
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, mapping
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -22,7 +23,7 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, load in document.forces.items():
         if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, f.ActuatorEntry | f.SpringEntry | f.BushingEntry):
+        elif isinstance(load, fe.BushingEntry | f.ActuatorEntry | f.SpringEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, blow in document.impulses.items():

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.spec.couplings import Wheel
+from heuncli.spec.couplings import RollingWheel
 from heuncli.spec.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
@@ -16,9 +16,9 @@ LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts"
 SLIPS = "the wheel {} would take more friction than there is: it slips"
 
 
-def wheels_of(spec: Spec) -> dict[str, Wheel]:
+def wheels_of(spec: Spec) -> dict[str, RollingWheel]:
     """The wheels of a spec."""
-    return {name: given for name, given in spec.couplings.items() if isinstance(given, Wheel)}
+    return {name: given for name, given in spec.couplings.items() if isinstance(given, RollingWheel)}
 
 
 def at_the_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
@@ -38,7 +38,7 @@ def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
                 yield f"in the blow at t = {jump.time:.6g} s {sentence.format(name)}"
 
 
-def told(wheel: Wheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
+def told(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
     """Of one of several instants: a normal force below zero, and more friction than what presses lets it have."""
     least = -tolerances.NO_FORCE * np.nan_to_num(block["force"][k])
     if not wheel.held and block["normal"][k] < least:

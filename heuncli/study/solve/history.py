@@ -265,7 +265,7 @@ def require_apart(runner: Runner, checked: CheckedRun) -> None:
         if problem is not None:
             raise SolveError(problem)
     if any(isinstance(load, Bushing) for load in runner.layout.mechanism.loads):
-        from heuncli.integration.diagnosis.turned_bushings import turns_over
+        from heuncli.integration.check.turned_over import turns_over
 
         if (problem := turns_over(runner, checked.run, checked.horizon)) is not None:
             raise SolveError(problem)
