@@ -22,6 +22,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     **f.LOADS,
     "Impulses": f.ImpulseEntry,
     "Stops": f.StopEntry,
+    "Latches": f.LatchEntry,
     **fc.COUPLINGS,
     "Sections": f.SectionEntry,
     "Properties": f.PropertiesEntry,
