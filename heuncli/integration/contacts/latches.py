@@ -90,6 +90,11 @@ class Latches:
             found[i], found[n + self.layout.latches.index(i)] = 1.0, at
         return found
 
+    @property
+    def idle(self) -> list[str]:
+        """Those that have not caught."""
+        return [stop.name for i, stop in self.stops.items() if not self.caught[i]]
+
     def let_go(self, said: Bolts) -> list[str]:
         """Let those go that are drawn back; their names."""
         gone = [i for i, back in zip(self.stops, said.back, strict=True) if back and i in self.holds]
