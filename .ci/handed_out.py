@@ -1,10 +1,15 @@
-"""What a folder of distributions should hold: the source, a wheel for every CPython, a wheel without compiled files."""
+"""What is handed out: the source and a wheel without compiled files, in a folder, and the wheel that is installed here.
+
+That one was compiled, for every CPython.
+"""
 
 from __future__ import annotations
 
+import re
 import sys
 import tarfile
 import zipfile
+from importlib.metadata import distribution
 from pathlib import Path
 from runpy import run_path
 
@@ -30,25 +35,32 @@ def differ(what: str, found: set[str], wanted: set[str]) -> list[str]:
     ]
 
 
+def wrong_in(what: str, names: set[str], modules: list[str]) -> list[str]:
+    """What is wrong with the files of a package that should hold these compiled modules."""
+    kernel = {name for name in names if name.endswith(COMPILED)}
+    wrong = differ(what, names - kernel, files("heuncli/**/*"))
+    if sorted(Path(name).name.partition(".")[0] for name in kernel) != sorted(modules):
+        wrong.append(f"{what} holds compiled modules {sorted(kernel)}")
+    return wrong + [f"{name} is for one version of Python" for name in kernel if ".cp" in name.lower()]
+
+
 def main(folder: Path) -> list[str]:
     (source,) = folder.glob("*.tar.gz")
-    (compiled,) = folder.glob("*-cp311-abi3-*.whl")
     (plain,) = folder.glob("*-py3-none-any.whl")
     with tarfile.open(source) as archive:
         names = {member.name.partition("/")[2] for member in archive.getmembers() if member.isfile()}
     generated = {name for name in names if name.startswith("heuncli.egg-info/")} | {"PKG-INFO", "setup.cfg"}
     top = ("README.md", "pyproject.toml", ".ci/*")
     wrong = differ(source.name, names - generated, files("heuncli/**/*", "specs/**/*", "tests/**/*", *top))
+    names = {name for name in zipfile.ZipFile(plain).namelist() if ".dist-info/" not in name}
+    wrong += wrong_in(plain.name, names, [])
 
-    package = files("heuncli/**/*")
-    for wheel in (compiled, plain):
-        names = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
-        kernel = {name for name in names if name.endswith(COMPILED)}
-        wrong += differ(wheel.name, names - kernel, package)
-        stems = sorted(Path(name).name.partition(".")[0] for name in kernel)
-        if stems != (sorted(MODULES) if wheel is compiled else []):
-            wrong.append(f"{wheel.name} holds compiled modules {sorted(kernel)}")
-        wrong += [f"{name} is for one version of Python" for name in kernel if ".cp" in name.lower()]
+    installed = distribution("heuncli")
+    names = {path.as_posix() for path in installed.files or () if path.parts[0] == "heuncli"}
+    wrong += wrong_in("what is installed", {name for name in names if not name.endswith(".pyc")}, MODULES)
+    label = installed.read_text("WHEEL") or ""
+    if not re.search("^Tag: cp311-abi3-", label, re.MULTILINE):
+        wrong.append(f"the wheel that was installed is not for every CPython: {label}")
     return wrong
 
 

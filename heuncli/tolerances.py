@@ -74,10 +74,13 @@ ORDERS_SETTLED = (
 # -- coordinates of Lagrange's equations
 TELLING = 1e8  # largest over least rate of coordinates for a unit of motion: eight digits of the partials are left
 NO_OFFSET = 1e-9  # rad/s^2, or of the size: what a pose that rests leaves of accelerations is rounding
-# [rad] of what a bushing bears: at half a turn its moment jumps to the other side, and which side it is on is known to
-# the error of a run, which is a thousandth of this where nobody asks for more
-LARGEST_TURN = 3.141592653589793 - 1e-6
 HALF_TURN = 1e-9  # of the scalar part of a quaternion, known to 1e-15: six digits of its Rodrigues vector are left
+
+# -- bushings: where they come to half a turn
+# [rad] short of it: there the moment jumps to the other side, and which side it is on is known to the error of a run,
+# which is a thousandth of this where nobody asks for more
+TURNED_OVER = 1e-6
+NEARLY_TURNED_OVER = 1e-3  # the same, where a run could not go on: so near to that it did not for that
 
 # -- no inertia
 NO_INERTIA = 1e-12  # of the body's largest moment: a tensor turned into other axes keeps 14 digits, some are typed
@@ -126,6 +129,13 @@ CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if
 NO_ANSWER = 1e-13  # of what free bodies would answer: what all other joints hold already, to hundreds of roundings
 SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instants are told apart by (least_step)
 
+# -- ropes over sheaves
+FLEET_ANGLE = 0.07  # rad, 4 deg: how far a rope may leave a sheave's plane (DIN 15020-1); its forces are then right to
+# 1 - cos of it, 0.25 %
+FLEET_SEEN = 1e-4  # rad: below, what that makes is 5e-9 of a force, as little as the loads of a run are known to
+ASKEW = 1e-7  # rad: axes of two sheaves that a strand runs between, which only rounding may part
+OFF_SHEAVE = 1e-9  # rad: an arc that is less than none by more has left its sheave
+
 # -- same instant, same place, same direction
 SAME_INSTANT = 1e-9  # of the run's length: instants typed with ten digits
 SIDE_BY_SIDE = 1e-12  # of the run's length: thousands of roundings of an instant; what jumps between has two sides
@@ -142,10 +152,9 @@ EQUAL_COMPONENTS = (
 MESH_DIGITS = 2.0**-21  # of the largest coordinate: eight steps of a float32, which is what files of meshes hold
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
 OUTLINE_PRINCIPAL = 1e-4  # the same of a mesh: its corners have the digits of a float32, its arcs are chords
-OUTLINE_SYMMETRIC = (
-    1e-3  # of the area times the cube of its extent: third moments of an outline that is the same turned by
-)
-# 180 degrees; as chords of arcs leave, while a channel has some 1e-2
+# of the area times the cube of its extent: third moments of an outline that is the same turned by 180 degrees; as chords
+# of arcs leave, while a channel has some 1e-2
+OUTLINE_SYMMETRIC = 1e-3
 PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by less than that over 1 - I1/I2
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave
 

@@ -19,7 +19,8 @@ from tests.shared.command import SPEC_TEXTS, Done, Heun
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 # And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
 # touch no kernel.
-JUDGED, SHOWN = {"closed_forms", "convergence", "honesty", "limits"}, {"browser", "pictures", "reporting", "show"}
+JUDGED = {"closed_forms", "convergence", "honesty", "limits"}
+SHOWN = {"browser", "pictures", "report", "reporting", "show"}
 SPARED = {*JUDGED, *SHOWN, "contributing", "exporting", "importing", "collectives", "python_door"}
 # Of every other family of cases so many, spread over it: enough to see what only plain Python does otherwise. These
 # folders judge numbers, too, but random scenes pass every line of the kernel: one of each family.
@@ -75,12 +76,22 @@ def pytest_collection() -> Generator[None, object, object]:
         gc.enable()
 
 
+def is_spared(folder: Path) -> bool:
+    """Whether a folder's tests are for the compiled kernel alone."""
+    return KERNEL != "compiled" and folder.parent == Path(__file__).parent and folder.name in SPARED
+
+
+def pytest_ignore_collect(collection_path: Path) -> bool | None:
+    """What the plain kernel is spared is not even imported, unless it is named."""
+    return True if is_spared(collection_path) else None
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     if KERNEL == "compiled":
         return
     families: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if not item.get_closest_marker("heavy") and item.path.parent.name not in SPARED:
+        if not item.get_closest_marker("heavy") and not is_spared(item.path.parent):
             families.setdefault(item.nodeid.split("[")[0], []).append(item)
     kept = {item for family in families.values() for item in share_of(family)}
     config.hook.pytest_deselected(items=[item for item in items if item not in kept])

@@ -36,7 +36,7 @@ class DescribedPoint(NamedTuple):
 
 
 class DescribedEntry(NamedTuple):
-    """An entry of a block (a joint, drive, stop, force), or a shape, without a name: keys as a spec has them.
+    """An entry of a block (a joint, drive, stop, force, coupling), or a shape, without a name: keys as a spec has them.
 
     `{"type": "pin", "from": "ground.base", "to": "arm.base", "axis": (0.0, 0.0, 1.0)}`
     """
@@ -93,6 +93,7 @@ class DescribedMachine(NamedTuple):
     drives: tuple[DescribedEntry, ...] = ()
     forces: tuple[DescribedEntry, ...] = ()
     stops: tuple[DescribedEntry, ...] = ()
+    couplings: tuple[DescribedEntry, ...] = ()
     analysis: Mapping[str, Value] = NOTHING
     told: tuple[str, ...] = ()
     remarks: Mapping[str, str] = NOTHING

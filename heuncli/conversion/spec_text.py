@@ -57,6 +57,7 @@ def _lines(machine: DescribedMachine, name: str) -> Iterator[str]:
         ("drives", machine.drives),
         ("forces", machine.forces),
         ("stops", machine.stops),
+        ("couplings", machine.couplings),
     ):
         yield from _block(machine, name_, (line for entry in entries for line in _entry(entry)))
     yield from _block(machine, "analysis", (f"  {key}: {_flow(value)}" for key, value in machine.analysis.items()))

@@ -13,7 +13,7 @@ from heuncli.tree.layout import Layout
 def poses_do_not_fit(layout: Layout, rows: Indices, left: Array) -> SolveError:
     """left: the gap [m] of each of some closure rows; the worst is told."""
     name, about, bodies = _owner(layout, rows, left)
-    message = f"{name} cannot be met by the start: {np.max(np.abs(left)):.3g} m stay open between {bodies}"
+    message = f"{name} cannot be met by the start: {_most(layout, rows, left)} stay open between {bodies}"
     hint = "hold fewer values (initial, position, orientation); or change its numbers"
     return SolveError(Problem("does-not-fit", message, hint=hint, about=about))
 
@@ -21,9 +21,8 @@ def poses_do_not_fit(layout: Layout, rows: Indices, left: Array) -> SolveError:
 def rates_do_not_fit(layout: Layout, rows: Indices, left: Array) -> SolveError:
     """left: what the rate [m/s] of each of some closure rows lacks; the worst is told."""
     name, about, bodies = _owner(layout, rows, left)
-    message = (
-        f"{name}: the start velocities of {bodies} differ there by {np.max(np.abs(left)):.3g} m/s more than it allows"
-    )
+    most = _most(layout, rows, left)
+    message = f"{name}: the start velocities of {bodies} differ there by {most}/s more than it allows"
     hint = "hold fewer velocities, or drive fewer coordinates; what is left out follows the couplings"
     return SolveError(Problem("rates-do-not-fit", message, hint=hint, about=about))
 
@@ -48,6 +47,16 @@ def _owner(layout: Layout, rows: Indices, left: Array) -> tuple[str, str, str]:
         what, bodies = f"coupling {coupling.name} ({coupling.given.type})", set(coupling.bodies)
     names = [_name(mechanism, i) for i in sorted(bodies)]
     return what, mechanism.owner(k), " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
+
+
+def _most(layout: Layout, rows: Indices, left: Array) -> str:
+    """The largest of what is left, in its unit: rad of a row of angles, whose gaps count by the scene's size."""
+    k = int(np.argmax(np.abs(left)))
+    r, joints = int(rows[k]), len(layout.mechanism.joints)
+    coupling = layout.mechanism.couplings[layout.rows[r] - joints] if layout.rows[r] >= joints else None
+    if coupling is None or coupling.rows[r - layout.rows.index(layout.rows[r])].weight:
+        return f"{abs(left[k]):.3g} m"
+    return f"{abs(left[k]) / layout.size:.3g} rad"
 
 
 def _name(mechanism: Mechanism, body: int) -> str:

@@ -157,7 +157,7 @@ class CoupledFit:
         n, turns = len(self.freedoms.answers), motion.turns[self.bodies]
         arms = np.einsum("nij,nj->ni", now.rotation[self.bodies], self.arms)
         centres = motion.v[self.bodies] + np.cross(turns, arms[:, :, None], axis=1)
-        return np.concatenate([turns.reshape(-1, n), centres.reshape(-1, n) / self.size])
+        return np.concatenate([turns.reshape(3 * len(turns), n), centres.reshape(3 * len(turns), n) / self.size])
 
     def _rows(self, motion: Motion, lack: Array, which: Indices) -> Rows:
         weight = self.weight[which]

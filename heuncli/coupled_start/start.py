@@ -12,6 +12,7 @@ from heuncli import tolerances
 from heuncli.coupled_start.errors import poses_do_not_fit, rates_do_not_fit, too_many
 from heuncli.coupled_start.fit import AskedRows, CoupledFit
 from heuncli.coupled_start.freedoms import Freedoms, concerned
+from heuncli.coupled_start.told import told
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
 from heuncli.results import Array
@@ -57,6 +58,7 @@ def fitted(scene: PreparedScene, t: float, asked: AskedRows) -> PreparedScene:
     if not moved and not hurried:
         return scene
     start = fit.now()[1]
+    start = replace(start, chosen=(*start.chosen, *told(scene, start)))
     if not moved:
         return arranged(scene.mechanism, start)
     starts = _counted(scene, fit.state, start)

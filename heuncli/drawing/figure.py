@@ -44,7 +44,10 @@ class Strokes(NamedTuple):
 
 
 class Polygon(NamedTuple):
-    """A closed line through corners (n, 2), filled lightly or not at all; solid: what lies beneath hardly shows."""
+    """A closed line through corners (n, 2), filled lightly or not at all; solid: what lies beneath hardly shows.
+
+    outlined: whether the line itself is drawn.
+    """
 
     name: str
     corners: Array
@@ -52,6 +55,7 @@ class Polygon(NamedTuple):
     filled: bool = False
     solid: bool = False
     width: float = 1.0
+    outlined: bool = True
 
 
 class Arrow(NamedTuple):

@@ -232,7 +232,8 @@ def _polygon(item: Polygon, box: PanelBox) -> Iterator[Shape]:
         yield Area(corners, mixed(colour, TINT), SOLID, shown(item.name))
     elif item.filled:
         yield Area(corners, colour, TINT, shown(item.name))
-    yield Line((*corners, corners[0]), colour, item.width, name=shown(item.name))
+    if item.outlined:
+        yield Line((*corners, corners[0]), colour, item.width, name=shown(item.name))
 
 
 def _symbol(item: Symbol, box: PanelBox) -> Iterator[Shape]:

@@ -84,6 +84,8 @@ def _strokes(item: Strokes, canvas: Canvas) -> None:
 
 
 def _polygon(item: Polygon, canvas: Canvas) -> None:
+    if not item.outlined:
+        return
     around = np.concatenate([item.corners, item.corners[:1]])
     _course(canvas, around[:, 0], around[:, 1], NOBODY if item.pen is None else item.pen)
 

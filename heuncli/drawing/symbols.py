@@ -67,6 +67,12 @@ def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
     )
 
 
+def radial(inner: float, outer: float, angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
+    """A stroke away from the middle; angle [degrees]."""
+    a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+    return (inner * a, inner * b), (outer * a, outer * b)
+
+
 QUARTERS = tuple(SymbolPart(((0.0, 0.0), *arc(3.6, a, a + 90.0, 6)), True, "ink") for a in (0.0, 180.0))
 SPIRAL = tuple((r * math.cos(0.9 * r), r * math.sin(0.9 * r)) for r in (0.4 * k for k in range(5, 31)))
 SYMBOLS: Mapping[str, SymbolRow] = {
@@ -97,6 +103,10 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     "turning back": SymbolRow((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
     "sliding": SymbolRow((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
     "coil": SymbolRow((line(*SPIRAL),)),
+    # two sleeves, and between them what gives way
+    "bushing": SymbolRow(
+        (ring(9.0, "paper"), ring(3.4, "paper"), *(line(*radial(4.0, 8.4, 60.0 * k)) for k in range(6))), "⊚", "o"
+    ),
     "toward": SymbolRow((ring(4.4, "paper"), ring(1.4, "ink")), "⊙", "."),
     "away": SymbolRow((ring(4.4, "paper"), line((-3.1, -3.1), (3.1, 3.1)), line((-3.1, 3.1), (3.1, -3.1))), "⊗", "x"),
 }

@@ -78,8 +78,8 @@ class Scope:
     joints gives the type of each, points those of each body and of the ground; time, coordinates and points may be used
     only where in_time. given: the parameters that have
     a dimension, as they are written. with_units: numbers may have units, and what is compared is of one dimension.
-    calculations: numbers of parameters alone that were read before, in a spec whose names are the same. own: what of the
-    load itself a name means, as `length` of a spring's line: its quantity.
+    calculations: numbers of parameters alone that were read before, in a spec whose names are the same. own: what of
+    the load itself a name means, as `length` of a spring's line: its quantity.
     """
 
     parameters: Mapping[str, float | None] = NONE

@@ -99,6 +99,10 @@ def put_answers(
         at = put(to.parts, at, scaled(part.factor, part.f))
         at = put(to.parts, at, scaled(part.factor, part.m))
         at = put(to.parts, at, part.Q)
+        at = put(to.parts, at, part.on_a)
+        at = put(to.parts, at, part.on_b)
+        to.parts[at] = part.gap
+        at += 1
     at = j * to.whole_width
     to.whole[at] = scene.gap
     to.whole[at + 1] = idle

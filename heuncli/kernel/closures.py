@@ -33,8 +33,26 @@ if not cython.compiled:
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, ROD, SUM, TURN, Body, Carried, Closure, Counter, Scene
+    from heuncli.kernel.rolling import rolling_row
+    from heuncli.kernel.scene import (
+        ARC,
+        CAM,
+        DOT,
+        GUIDE,
+        MESH,
+        ROD,
+        STRAND,
+        SUM,
+        TURN,
+        WOUND,
+        Body,
+        Carried,
+        Closure,
+        Counter,
+        Scene,
+    )  # fmt: skip
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
 
 
@@ -76,9 +94,7 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if (
-        scene.flat and row.kind != MESH and row.kind != CAM and row.e.z == 0.0 and row.g.z == 0.0
-    ):  # nothing along z, nor a turn about it
+    if scene.flat and row.kind <= TURN and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
@@ -92,8 +108,16 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         turn_row(scene, row)
     elif row.kind == ROD:
         rod_row(scene, row)
-    else:
+    elif row.kind == MESH:
         mesh_part(scene, row)
+    elif row.kind == STRAND:
+        strand_part(scene, row)
+    elif row.kind == ARC:
+        arc_part(scene, row)
+    elif row.kind == WOUND:
+        wound_part(scene, row)
+    else:
+        rolling_row(scene, row)
 
 
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -105,12 +129,20 @@ def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     for i in range(row.part, row.part + row.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
         measure_condition(scene, part)
+        enter(scene, part)
         row.gap += part.factor * part.gap
         row.rate += part.factor * part.rate
         row.gamma += part.factor * part.gamma
         row.f = add_scaled(row.f, part.factor, part.f)
         row.m = add_scaled(row.m, part.factor, part.m)
     row.Q = scene.parts[row.part].Q
+
+
+def enter(scene: cython.pointer[Scene], part: cython.pointer[Closure]) -> cython.void:
+    """Where the load of a part enters its two bodies: at one place, but for what spans the way between two."""
+    if part.kind != STRAND:
+        part.on_b = part.Q
+        part.on_a = place_of(scene, part.a, part.p) if part.kind == ROD else part.Q
 
 
 def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

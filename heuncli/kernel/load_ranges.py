@@ -1,4 +1,4 @@
-"""How far the variables that are of loads may go over a stretch of time of length T, by bounds of their bodies' motions.
+"""How far the variables that are of loads may go over a stretch of time of length T, by bounds of the motions.
 
 V, A: of the speeds and accelerations of a load's two points together; Omega, Alpha: of a's turning; L: of the span.
 

@@ -1,7 +1,7 @@
 """Paths: where a point that runs along one is, and which way it goes on there.
 
     r(q) = c0 + c1 h + c2 h^2 + c3 h^3,  h = q - q_k        in the piece from q_k on; r', r'', r''' its derivatives
-Beyond open ends the last piece goes on: the run ends there (mechanism/path_ends.py), and only stages look further.
+Beyond an open end there is none (NaN). Behind the pieces of a path stands one that says where the last of them ends.
 """
 
 from __future__ import annotations
@@ -12,9 +12,8 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from math import floor
-
     from heuncli.kernel.algebra import Mat3, Vec3, add_scaled, rotate, scaled
+    from heuncli.kernel.libm import NAN, floor
     from heuncli.kernel.scene import Freedom, PathPoint, Piece, Scene
     from heuncli.kernel.shadow import cython
 
@@ -38,6 +37,8 @@ def path_point(
     first: cython.double = scene.pieces[path].begin
     if period > 0.0:
         q = q - period * floor((q - first) / period)
+    elif not (q >= first and q <= scene.pieces[path + count].begin):
+        q = NAN
     piece: cython.pointer[Piece] = cython.address(scene.pieces[path + piece_at(scene, path, count, q)])
     h: cython.double = q - piece.begin
     r: Vec3 = add_scaled(piece.c0, h, add_scaled(piece.c1, h, add_scaled(piece.c2, h, piece.c3)))

@@ -21,6 +21,8 @@ BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
 ALONG_LINE = 3  # of a load: its length; before that the components of its strain
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
+TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
+STRAND, ARC, WOUND = range(7, 10)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
@@ -156,6 +158,11 @@ class Closure(Record):
     by itself, taken `factor` times; parts stand in a table of their own, as they have no multiplier of their own.
     MESH: f = e and m = g at Q = p, all three fixed in a third body c; the gap is ratio q + ratio_b q_b - length of the
     coordinates of two freedoms. CAM: the coordinate of freedom_b is the lift over that of `freedom` (kernel/cams.py).
+    TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS: a wheel's on a plane (kernel/rolling.py); those that roll
+    hold a speed, and have no gap.
+    STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
+    b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
+    runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
     """
 
     kind: int
@@ -178,10 +185,10 @@ class Closure(Record):
     q: Vec3  # point of b
     length: float
     weight: float  # of the gap [m per unit]
-    part: int  # of a SUM: the first of its parts
+    part: int  # of a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
     part_count: int
     factor: float  # of a part
-    c: int  # of a MESH: the body that carries its place and directions; -1: the ground
+    c: int  # of a MESH or WOUND: the body that carries its place and directions; -1: the ground
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
@@ -198,6 +205,9 @@ class Closure(Record):
     f: Vec3
     m: Vec3
     Q: Vec3
+    t: Vec3  # of a STRAND: its direction across the axis, as the rope is listed
+    on_a: Vec3  # of a part: where its load enters the two bodies, if that is not Q
+    on_b: Vec3
     gap: float
     rate: float
     gamma: float  # J Vdot + gamma = 0
@@ -484,6 +494,55 @@ class RowTangent(Value):
     m: Vec3
     rate: float
     acceleration: float
+
+
+class Strand(Value):
+    """How a strand of a rope lies (sheaves.py): the axis, its direction across it, t x n, lengths across and whole."""
+
+    n: Vec3
+    t: Vec3
+    w: Vec3
+    l: float
+    S: float
+    h: float  # along the axis
+    sigma: float
+
+
+class StrandRate(Value):
+    """How a strand moves: rates of its angle and of its lengths across and whole; bend: of its second derivative."""
+
+    chi: float
+    l: float
+    S: float
+    bend: float
+
+
+class VectorRate(Value):
+    """A vector and its rate."""
+
+    x: Vec3
+    rate: Vec3
+
+
+class VectorRateTangent(Value):
+    """A vector with its rate, and what both change by along a direction of the state."""
+
+    own: VectorRate
+    change: VectorRate
+
+
+class WheelContact(Value):
+    """Where a wheel touches its plane, and the direction that a row of it looks along."""
+
+    c: VectorRate
+    e: VectorRate
+
+
+class WheelTangent(Value):
+    """The same with what it changes by along a direction of the state."""
+
+    c: VectorRateTangent
+    e: VectorRateTangent
 
 
 class Cam(Value):

@@ -22,7 +22,10 @@ if not cython.compiled:
         DOT,
         GUIDE,
         MESH,
+        ROD,
+        STRAND,
         SUM,
+        TOUCHES,
         TURN,
         Closure,
         LoadTangent,
@@ -35,6 +38,8 @@ if not cython.compiled:
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.tangent_rolling import rolling_along
+    from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tree import direction_of
 
 
@@ -99,6 +104,8 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return mesh_along(scene, row)
     if row.kind == CAM:
         return cam_along(scene, row)
+    if row.kind >= TOUCHES:
+        return rolling_along(scene, row)
     Q: Vec3 = point_along(scene, row.b, row.q).x
     if row.kind == GUIDE:
         return guide_along(scene, row, Q)
@@ -106,7 +113,12 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return dot_along(scene, row, Q)
     elif row.kind == TURN:
         return turn_row_along(scene, row, Q)
-    return rod_along(scene, row, Q)
+    elif row.kind == ROD:
+        return rod_along(scene, row, Q)
+    elif row.kind == STRAND:
+        return strand_along(scene, row)
+    zero: Vec3 = Vec3(0.0, 0.0, 0.0)
+    return RowTangent(Q, zero, zero, 0.0, 0.0)  # what lies on a sheave
 
 
 def guide_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

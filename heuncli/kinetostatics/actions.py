@@ -48,7 +48,8 @@ class Action:
     """Force [N] and moment [N m] ON the body of `to`, (n_t, 3); the opposite ON that of `from_`, None: from outside.
 
     name: of the load, of the joint (its constraint alone, unless drive and stops are included on purpose), of the drive
-    or of the stop. spread: the parts of a distributed load, whose resultant the force and the moment are.
+    or of the stop. spread: the parts of a distributed load, whose resultant the force and the moment are. opposite: the
+    moment ON the body of `from_`, where its end is so far apart that it is not the opposite.
     """
 
     kind: Literal["load", "joint", "drive", "stop", "coupling"]
@@ -58,19 +59,25 @@ class Action:
     force: Array
     moment: Array
     spread: tuple[DistributedForce, ...] = ()
+    opposite: Array | None = None
+
+    @property
+    def opposite_moment(self) -> Array:
+        """Moment ON the body of `from_` about its own end."""
+        return -self.moment if self.opposite is None else self.opposite
 
     def on_bodies(self) -> Iterator[tuple[ActionEnd, Array, Array]]:
         """Each end with the force and moment ON the body there, about its position."""
         yield self.to, self.force, self.moment
         if self.from_ is not None:
-            yield self.from_, -self.force, -self.moment
+            yield self.from_, -self.force, self.opposite_moment
 
     def on_ground(self) -> tuple[Array, Array, Array] | None:
         """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere."""
         if self.to.body == GROUND:
             return self.force, self.moment, self.to.position
         if self.from_ is not None and self.from_.body == GROUND:
-            return -self.force, -self.moment, self.from_.position
+            return -self.force, self.opposite_moment, self.from_.position
         return None
 
 
@@ -147,7 +154,7 @@ def _ends(
     if isinstance(load, PairLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
     if isinstance(load, Bushing):
-        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, None, apart=True)
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, load.p, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)
 

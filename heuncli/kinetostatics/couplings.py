@@ -11,9 +11,9 @@ from collections.abc import Collection, Iterator, Sequence
 import numpy as np
 
 from heuncli.kinetostatics.actions import Action, ActionEnd
+from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import GROUND
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -22,21 +22,34 @@ from heuncli.tree.layout import Layout
 
 @record
 class PartLoad:
-    """Force and moment of one part ON its body b, the opposite ON a, about the place (n_t, 3).
+    """Force and moment of one part ON its body b, about the place there, the opposite ON a, about its place on a.
 
-    f, m (n_t, 3): those for a multiplier of 1.
+    place, place_a (n_t, 3); f, m, m_a (n_t, 3): those for a multiplier of 1, m about the one, m_a about the other.
+    pushed (n_t, 3): the force ON b for one of 1 or of -1; None: none.
     """
 
     part: CouplingPart
     place: Array
+    place_a: Array
     f: Array
     m: Array
+    m_a: Array
     multiplier: Array
+    pushed: Array | None = None
 
     @property
     def force(self) -> Array:
         """Force ON b."""
         found: Array = self.multiplier[..., None] * self.f
+        return found if self.pushed is None else found + self.push
+
+    @property
+    def push(self) -> Array:
+        """The part of the force ON b that has the same direction whatever the sign of all multipliers together."""
+        if self.pushed is None:
+            return np.zeros_like(self.multiplier[..., None] * self.f)
+        whole = self.multiplier.reshape(-1, len(self.f)).sum(axis=0)
+        found: Array = (np.where(whole < 0.0, -1.0, 1.0) * self.multiplier)[..., None] * self.pushed
         return found
 
     @property
@@ -50,11 +63,22 @@ class PartLoad:
         return replace(self, multiplier=multiplier)
 
     @property
+    def moment_on_a(self) -> Array:
+        """Moment ON a about its place there."""
+        found: Array = -self.multiplier[..., None] * self.m_a
+        return found
+
+    @property
+    def on_both(self) -> Iterator[tuple[int, Array, Array, Array]]:
+        """Of b, then of a: the body, the place, the force ON it and the moment about the place."""
+        yield self.part.b, self.place, self.force, self.moment
+        yield self.part.a, self.place_a, -self.force, self.moment_on_a
+
+    @property
     def ends(self) -> tuple[ActionEnd, ActionEnd]:
         """Where it acts on b and on a: it may move over both."""
-        return ActionEnd(self.part.b, self.place, None, apart=True), ActionEnd(
-            self.part.a, self.place, None, apart=True
-        )
+        on_b = ActionEnd(self.part.b, self.place, None, apart=True)
+        return on_b, ActionEnd(self.part.a, self.place_a, None, apart=True)
 
 
 @record
@@ -93,6 +117,11 @@ class CouplingLoads:
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
 
+    def parts_of_rows(self) -> Iterator[tuple[int, PartLoad]]:
+        """The parts, each with the closure row that it belongs to."""
+        owners = (r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts)
+        return zip(owners, self.parts, strict=True)
+
     def plus(self, more: Array | None) -> CouplingLoads:
         """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
         if more is None:
@@ -105,15 +134,16 @@ class CouplingLoads:
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in self.parts:
-            for body, sign in ((part.part.b, 1.0), (part.part.a, -1.0)):
-                at, force, moment = found.get(body, (part.place, np.zeros_like(part.force), np.zeros_like(part.moment)))
-                moment = moment + sign * (part.moment + cross_rows(part.place - at, part.force))
-                found[body] = at, force + sign * part.force, moment
+        for part in sorted(self.parts, key=lambda own: not own.part.lies):  # of sheaves their centres come first
+            for body, place, own, turning in part.on_both:
+                at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
+                found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
         return found
 
 
-def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | None = None) -> list[CouplingLoads]:
+def coupling_loads(
+    layout: Layout, recovered: Answers, states: BodyStates, only: Collection[str] | None = None
+) -> list[CouplingLoads]:
     """The loads of all couplings, in the order of the spec; only: of those of some names."""
     mechanism, found = layout.mechanism, []
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
@@ -123,34 +153,33 @@ def coupling_loads(layout: Layout, recovered: Answers, only: Collection[str] | N
         multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
         parts: list[PartLoad] = []
         for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
-            parts += _part_loads(layout, r, row.parts, multiplier, recovered)
+            parts += _part_loads(layout, r, row.parts, multiplier, recovered, states)
         found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
     return found
 
 
 def _part_loads(
-    layout: Layout, r: int, parts: Sequence[CouplingPart], multiplier: Array, recovered: Answers
+    layout: Layout,
+    r: int,
+    parts: Sequence[CouplingPart],
+    multiplier: Array,
+    recovered: Answers,
+    states: BodyStates,
 ) -> Iterator[PartLoad]:
     """The loads of the parts of one row."""
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
-        f, m, Q = (recovered.parts[name][:, k] for name in ("f", "m", "Q"))
-        yield PartLoad(part, Q, f, m, multiplier)
+        f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
+        pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
+        m_a = m + cross_rows(Q - on_a, f)
+        yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
     """What they exert, an action a part."""
     return [
-        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment)
+        Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
+        if not part.part.lies
     ]
-
-
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
-    on = {
-        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
-    }
-    return {loads.carries: loads.carried, "on": on, "open": []}

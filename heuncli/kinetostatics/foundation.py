@@ -82,6 +82,11 @@ class OnGround(NamedTuple):
     moment: Array
     about: Array
 
+    def with_another(self, own: OnGround) -> OnGround:
+        """Together with another part of the same coupling, about the place of the first."""
+        moment = self.moment + own.moment + cross_rows(own.about - self.about, own.force)
+        return OnGround(self.force + own.force, moment, self.about)
+
 
 def on_ground(actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
     """What stands on the ground, loads before joints: ("supports", joint), or ("elements", force or drive)."""
@@ -93,7 +98,8 @@ def on_ground(actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
         key = ("supports" if action.kind == "joint" else "elements", action.name)
         if action.kind == "drive" and key in found:  # a force may have the same name
             key = ("elements", f"drives.{action.name}")
-        found[key] = OnGround(*on)
+        own = OnGround(*on)
+        found[key] = own if key not in found else found[key].with_another(own)
     return found
 
 

@@ -101,7 +101,7 @@ def shares_of(
     live = {name: places for name, places in members.items() if name in acting or busy[list(places)].any()}
     live = live or dict([*members.items()][-1:])
     column = column_of(recovered, recovered.causes, live)
-    joints, couplings = joint_loads(layout, column, states), coupling_loads(layout, column)
+    joints, couplings = joint_loads(layout, column, states), coupling_loads(layout, column, states)
     return Shares(tuple(members), tuple(live), column, joints, couplings, own)
 
 

@@ -14,8 +14,9 @@ import numpy as np
 
 from heuncli.records import record
 from heuncli.response import motions, settled, workspace_of
-from heuncli.results import Array
+from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import cross, cross_rows
+from heuncli.tree.held_speeds import holds_speed
 from heuncli.tree.layout import Layout, places_of_rates
 from heuncli.tree.tables import Table
 
@@ -41,6 +42,18 @@ class Linearised:
     omega: Array  # (n_b, 3)
     velocities: Array  # (n_b, 3) of the centres
     mass: Array  # (n, n) mass matrix of the tree, without what is lent
+    posed: Posed | None = None  # where rows hold speeds
+
+
+@record
+class Posed:
+    """What the rows that hold poses alone admit, where others hold speeds: all poses are reached, not all at once.
+
+    tangent (n, p) orthonormal, by the layout's weights, p >= f; drift (n, p): the change of rates that each needs.
+    """
+
+    tangent: Array
+    drift: Array
 
 
 def linearised(layout: Layout, t: float, state: Array, holding: Array | None = None) -> Linearised:
@@ -69,6 +82,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
         by_rate=found.tangent[np.ix_(rates, rates)],
         tangent=tangent,
         drift=drift,
+        posed=posed(layout, at.chosen, found.rates[:, rates], found.rates @ shown, weights),
         across=across / layout.tables["closures"]["weight"][at.chosen],
         **motions_of_bodies(layout, poses, found.omega[..., rates], found.v[..., rates]),
     )
@@ -104,6 +118,17 @@ def admitted(J: Array, turned: Array, weights: Array) -> tuple[Array, Array, Arr
     by_rows = U.T @ (turned @ tangent)
     across = (V[:m].T / s @ U.T) / weights[:, None]
     return tangent, -(V[:m].T @ (by_rows / s[:, None])) / weights[:, None], across
+
+
+def posed(layout: Layout, chosen: Indices, J: Array, turned: Array, weights: Array) -> Posed | None:
+    """The displacements of rows that hold poses, where some of the independent ones (m,) hold speeds."""
+    speeds = holds_speed(layout)[chosen]
+    if not speeds.any():
+        return None
+    tangent, _, _ = admitted(J[~speeds], turned[~speeds], weights)
+    tangent = tangent[:, : len(weights) - int(np.sum(~speeds))]
+    needed = np.linalg.lstsq(J / weights, -turned @ tangent, rcond=None)[0]
+    return Posed(tangent, needed / weights[:, None])
 
 
 def motions_of_bodies(layout: Layout, poses: Table, turns: Array, shifts: Array) -> dict[str, Array]:

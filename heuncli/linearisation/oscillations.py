@@ -65,10 +65,14 @@ def oscillations(system: ReducedEquations, loose: Loose) -> list[Mode]:
 
 def mode_of(system: ReducedEquations, eigenvalue: complex, error: float, x: Array, free: bool) -> Mode:
     """A motion by its eigenvalue and its displacement x in the reduced coordinates."""
-    shape = system.tangent @ x
+    return motion_of(system.tangent @ x, system.mass, eigenvalue, error, free)
+
+
+def motion_of(shape: Array, mass: Array, eigenvalue: complex, error: float, free: bool) -> Mode:
+    """A motion by its eigenvalue and its displacement (n,) of the tree's freedoms, whose mass matrix that is."""
     if free:
         return Mode("free", 0j, error, shape)
-    error += 0.5 * abs(eigenvalue) * tolerances.EIGENVALUE * cancelled(system.mass, shape)
+    error += 0.5 * abs(eigenvalue) * tolerances.EIGENVALUE * cancelled(mass, shape)
     growth = eigenvalue.real if abs(eigenvalue.real) > error else 0.0
     if eigenvalue.imag == 0.0:
         return Mode("divergence" if growth > 0.0 else "decay", complex(growth), error, shape)

@@ -10,6 +10,7 @@ import numpy as np
 from heuncli.expressions.programs import Expression, is_of_point
 from heuncli.joint_kinds import TYPES, Kind
 from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.directions import unit
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
@@ -73,13 +74,16 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
         seen = {point.body for point in points.values()}
         told |= {joints[joint][0] for joint in coupled(spec)}
+        seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
         told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import couplings_of  # few scenes have them
+        from heuncli.mechanism.build_couplings import couplings_of, pretensions  # few scenes have them
 
-        couplings = couplings_of(spec, made, bodies, {name: k for name, (k, _) in joints.items()})
+        number = {name: k for name, (k, _) in joints.items()}
+        couplings = couplings_of(spec, made, bodies, number)
+        loads += pretensions(spec, made, bodies, number)
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -103,14 +107,6 @@ def optional(value: m.Vec | m.Matrix | None) -> Array | None:
 def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
     """A vector with its frame, or None."""
     return None if value is None else Directed(np.array(value.vector), value.in_body)
-
-
-def unit(vector: m.Vec) -> Array:
-    """The direction of a vector that the spec layer found not to be zero."""
-    v = np.array(vector, dtype=float)
-    v = v / np.abs(v).max()
-    along: Array = v / np.sqrt(v @ v)
-    return along
 
 
 def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:
@@ -158,7 +154,10 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
 
 def coupled(spec: m.Spec) -> set[str]:
     """The joints whose coordinates are coupled."""
-    return {joint for coupling in spec.couplings.values() for joint in coupling.joints}
+    ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
+    gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
+    found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
+    return found | {joint for coupling in spec.couplings.values() for joint in coupling.joints}
 
 
 def coordinates_used(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -10,10 +10,12 @@ from heuncli.errors import Finding, Problem, SpecError
 from heuncli.expressions.paths import path_of
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
+from heuncli.mechanism.directions import unit
 from heuncli.mechanism.gearing import gear_row
-from heuncli.mechanism.model import GROUND, Body, Joint
-from heuncli.mechanism.strands import belt_row
+from heuncli.mechanism.model import GROUND, Body, Joint, PairLoad
+from heuncli.mechanism.strands import belt_row, pretension_of
 from heuncli.mechanism.threads import screw_row
+from heuncli.mechanism.wheels import WheelEnds, ball_rows, disc_rows
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import couplings as c
@@ -32,11 +34,23 @@ def couplings_of(
         try:
             found.append(Coupling(name, MADE[given.type](given, drawn), given))
         except Finding as misfit:
-            path = f"couplings.{name}"
+            path = f"{'rolling' if given.type == 'wheel' else 'couplings'}.{name}"
             problems.append(Problem(misfit.code, misfit.message, spec.location(path), misfit.hint))
     if problems:
         raise SpecError(*problems)
     return tuple(found)
+
+
+def pretensions(
+    spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
+) -> tuple[PairLoad, ...]:
+    """What belts pull their pulleys together with, by the belts' names."""
+    drawn = Drawing(spec, joints, bodies, number)
+    belts = {name: own for name, own in spec.couplings.items() if own.type == "belt" and own.pretension > 0.0}
+    return tuple(
+        pretension_of(name, own, joints, bodies, (drawn.of(own.terms)[0], drawn.of(own.terms)[1]))
+        for name, own in belts.items()
+    )
 
 
 @record
@@ -120,10 +134,22 @@ def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
     return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
 
 
-def unit(vector: tuple[float, float, float]) -> Array:
-    """The direction of a vector that is not zero."""
-    v = np.array(vector)
-    return v / np.sqrt(v @ v)
+def wheel(given: c.RollingWheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """A wheel on its plane."""
+    (b, q), (a, p) = drawn.place(given.wheel), drawn.place(given.on)
+    ends: WheelEnds = {"a": a, "b": b, "p": p, "q": q, "e": unit(given.normal)}
+    if given.axis is None:
+        return ball_rows(ends, given.radius)
+    ways = {"along": not given.slides, "aside": drawn.spec.space != "planar"}  # in the plane nothing goes aside
+    return disc_rows(ends, unit(given.axis), given.radius, ways)
 
 
-MADE = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}
+def at_start(given: c.Rope | c.ConstantVelocity, drawn: Drawing) -> tuple[CoupledRow, ...]:
+    """None yet: what they hold is found where the bodies stand (tree/couplings_at_start.py)."""
+    return ()
+
+
+MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
+    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam,
+    "wheel": wheel, "rope": at_start, "cv": at_start,
+}  # fmt: skip

@@ -17,7 +17,12 @@ from heuncli.results import Array
 from heuncli.spec import couplings as spec
 
 GROUND = -1
+Place = Array | tuple[float, float, float]
 NOWHERE = (0.0, 0.0, 0.0)
+CouplingKind = Literal[
+    "guide", "dot", "rod", "turn", "mesh", "cam", "touches", "rolls", "rolls_aside", "ball_touches", "ball_rolls",
+    "strand", "arc", "wound",
+]  # fmt: skip
 
 
 class Coordinate(NamedTuple):
@@ -47,14 +52,15 @@ class CamShape:
 class CouplingPart:
     """A condition of the two bodies a and b; what its fields mean for each kind stands with the kernel's Closure.
 
-    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates: those
-    that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's. apart: of a
-    mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work, whatever moves, and
-    stands in the axes of c, too. standing: of a mesh a force and a moment about p that are there besides, whatever the
-    multiplier, and do no work either.
+    p, q: points of a and b, body axes (of meshes and cams p is one of the carrier c); e, g: directions. coordinates:
+    those that its gap is counted by, of a turn one, of a mesh one or two, of a cam the disc's and the follower's.
+    apart: of a mesh the force that pushes b out of a beside it, for a multiplier of 1 or of -1: it does no work,
+    whatever moves, and stands in the axes of c, too. radius: of a wheel; of what of a rope lies on
+    a sheave, below zero where it runs round clockwise about e. strand: of that the place among the row's parts of the
+    strand that arrives. other_axis: of a strand between two sheaves the axis of b, parallel to e.
     """
 
-    kind: Literal["guide", "dot", "rod", "turn", "mesh", "cam"]
+    kind: CouplingKind
     a: int
     b: int
     p: Array | tuple[float, float, float] = NOWHERE
@@ -65,13 +71,30 @@ class CouplingPart:
     c: int = GROUND
     coordinates: tuple[Coordinate, ...] = ()
     apart: Array | tuple[float, float, float] = NOWHERE
-    standing: tuple[Array | tuple[float, float, float], Array | tuple[float, float, float]] = (NOWHERE, NOWHERE)
     cam: CamShape | None = None
+    radius: float = 0.0
+    strand: int = 0
+    other_axis: Array | tuple[float, float, float] = NOWHERE
+
+    @property
+    def holds_speed(self) -> bool:
+        """Whether it holds a speed and no pose."""
+        return self.kind in ("rolls", "rolls_aside", "ball_rolls")
+
+    @property
+    def turns_its_bodies(self) -> bool:
+        """Whether it holds how its bodies turn, and not only where points of theirs are."""
+        return self.kind not in ("guide", "rod")
 
     @property
     def is_couple(self) -> bool:
         """Whether its load is a couple alone."""
         return self.kind in ("dot", "turn")
+
+    @property
+    def lies(self) -> bool:
+        """Whether it is of a rope what lies on a sheave, and loads nothing."""
+        return self.kind in ("arc", "wound")
 
     @property
     def places(self) -> tuple[tuple[int, Array], ...]:
@@ -87,7 +110,7 @@ class CouplingPart:
     @property
     def bodies(self) -> tuple[int, ...]:
         """All bodies that it looks at."""
-        return (self.a, self.b, self.c) if self.kind in ("mesh", "cam") else (self.a, self.b)
+        return (self.a, self.b, self.c) if self.kind in ("mesh", "cam", "wound") else (self.a, self.b)
 
 
 @record

@@ -164,8 +164,8 @@ class JointLoad:
 class Bushing:
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
-    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in b
-    that agree with them where it is not turned.
+    p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in
+    b that agree with them where it is not turned.
     """
 
     name: str
@@ -235,7 +235,10 @@ class Mechanism:
     def owner(self, k: int) -> str:
         """What a closure row belongs to, as a path: the joint of a number, or after these the coupling."""
         joints = len(self.joints)
-        return f"joints.{self.joints[k].name}" if k < joints else f"couplings.{self.couplings[k - joints].name}"
+        if k < joints:
+            return f"joints.{self.joints[k].name}"
+        coupling = self.couplings[k - joints]
+        return f"{'rolling' if coupling.given.type == 'wheel' else 'couplings'}.{coupling.name}"
 
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion.

@@ -1,6 +1,6 @@
 """Belts and chains: two strands along the lines that touch both pulleys, in the axes of what carries these.
 
-    nu . x = (r_1 - r_2) / D, crossed (r_1 + r_2) / D       nu: from the centre to where a strand touches; x: to the other
+    nu . x = (r_1 - r_2) / D, crossed (r_1 + r_2) / D       nu: from the centre to a strand, x: to the other
     T_1 = T_0 + lambda / 2,  T_2 = T_0 - lambda / 2         the first strand comes tight when the first pulley drives on
 As long as the belt is and without slip. Its own mass, and with it what flies off at speed, is left out.
 """
@@ -11,10 +11,11 @@ import math
 from collections.abc import Sequence
 
 from heuncli.errors import Finding
+from heuncli.expressions.programs import Expression
 from heuncli.mechanism.couplings import Coordinate, CoupledRow
-from heuncli.mechanism.gearing import GearMember, members, mesh_parts
-from heuncli.mechanism.model import Body, Joint
-from heuncli.records import record, replace
+from heuncli.mechanism.gearing import GearMember, line_on, members, mesh_parts
+from heuncli.mechanism.model import Body, Joint, PairLoad
+from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross
 from heuncli.spec import couplings as c
@@ -37,16 +38,27 @@ def belt_row(given: c.Belt, joints: Sequence[Joint], bodies: Sequence[Body], of:
     P = second.point - (second.point - first.point) @ first.axis * first.axis  # in the plane of the first pulley
     f = 0.5 * (slack.direction - tight.direction)
     m = 0.5 * (cross(slack.end - P, slack.direction) - cross(tight.end - P, tight.direction))
-    pull = -given.pretension * (tight.direction + slack.direction)
-    turn = -given.pretension * (cross(tight.end - P, tight.direction) + cross(slack.end - P, slack.direction))
 
     def work(member: GearMember) -> float:
         return float(f @ member.way(P) + m @ member.axis)
 
     counted = [Coordinate(x.joint, x.quantity, -work(first) * x.ratio) for x in first.coordinates]
     counted += [Coordinate(x.joint, x.quantity, work(second) * x.ratio) for x in second.coordinates]
-    parts = mesh_parts(first.body, second.body, carrier, P, f, m, counted)
-    return CoupledRow((replace(parts[0], standing=(pull, turn)), *parts[1:]))
+    return CoupledRow(mesh_parts(first.body, second.body, carrier, P, f, m, counted))
+
+
+def pretension_of(
+    name: str, given: c.Belt, joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
+) -> PairLoad:
+    """The pull of both strands at rest: along the line of centres, for what turns a pulley cancels."""
+    _, first, second = members(joints, bodies, of)
+    tight, slack = strands(given, first, second)
+    d = first.arm(second.point)
+    pull = given.pretension * float((tight.direction + slack.direction) @ d) / math.sqrt(float(d @ d))
+    p, _ = line_on(joints[of[0]], bodies, first.body)
+    q, along = line_on(joints[of[1]], bodies, second.body)
+    off = float((first.point - second.point) @ second.axis)
+    return PairLoad(name, first.body, p, second.body, q + off * along, Expression.of(-pull), 0.0, 0.0, 0.0)
 
 
 def strands(given: c.Belt, first: GearMember, second: GearMember) -> tuple[Strand, Strand]:

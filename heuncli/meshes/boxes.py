@@ -22,7 +22,7 @@ LEAF = 4  # boxes
 
 
 def overlapping(low: Array, high: Array) -> Iterator[tuple[Numbers, Numbers]]:
-    """Pairs of boxes (n, 3) that touch or overlap, each once, some at a time. Raises Finding where there are too many."""
+    """Pairs of boxes (n, 3) that touch or overlap, each once, some at a time. Raises Finding if they are too many."""
     if not len(low):
         return
     order = along_curve(0.5 * (low + high))

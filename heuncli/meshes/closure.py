@@ -101,12 +101,10 @@ class Shells(NamedTuple):
     turned: bool
 
 
-def shells_of(soup: Soup) -> Shells:
-    """The shells of a surface whose edges all have two triangles. Raises Finding."""
-    one, other = neighbours(soup)
-    first = components(len(soup.triangles), one, other)
-    _, number = np.unique(first, return_inverse=True)
-    number = number.reshape(-1)
+def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
+    """The shells of a surface that does not cross itself; beside: the two triangles of each edge. Raises Finding."""
+    first = components(len(soup.triangles), *beside)
+    number: Numbers = np.unique(first, return_inverse=True)[1].reshape(-1).astype(np.intp)
     middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
     (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
     volumes = np.bincount(number, V)

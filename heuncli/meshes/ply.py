@@ -36,7 +36,7 @@ class Element(NamedTuple):
     """So many things of a kind."""
 
     name: str
-    count: int
+    many: int
     properties: list[Property]
 
 
@@ -96,7 +96,7 @@ def head_of(content: bytes) -> PlyHead:
                     raise KeyError
         except (KeyError, ValueError, IndexError):
             raise refused("a line of the PLY head is none", "format, element, property; comments begin so") from None
-    if order is None or any(not 0 <= element.count <= len(content) for element in elements):
+    if order is None or any(not 0 <= element.many <= len(content) for element in elements):
         raise refused("the head of the PLY file announces more than there is", SAVE_AGAIN)
     return PlyHead(order, elements, line_end + 1)
 
@@ -119,9 +119,7 @@ def list_of(element: Element) -> int:
 
 def broken_off(element: Element) -> Finding:
     """That a file ends too early."""
-    return refused(
-        f"it breaks off: its head announces {element.count} of '{element.name}', there are fewer", SAVE_AGAIN
-    )
+    return refused(f"it breaks off: its head announces {element.many} of '{element.name}', there are fewer", SAVE_AGAIN)
 
 
 class _Words:
@@ -132,10 +130,10 @@ class _Words:
 
     def taken(self, element: Element) -> list[list[bytes]]:
         """The words of an element, a line a thing."""
-        lines = self.lines[self.at : self.at + element.count]
-        if len(lines) < element.count:
+        lines = self.lines[self.at : self.at + element.many]
+        if len(lines) < element.many:
             raise broken_off(element)
-        self.at += element.count
+        self.at += element.many
         return [line.split() for line in lines]
 
     def pass_over(self, element: Element) -> None:
@@ -178,9 +176,9 @@ class _Bytes:
             else:
                 fields += [(f"n{i}", self.order + p.counted), (str(i), self.order + p.kind, lengths or 0)]
         row = np.dtype(fields)
-        if self.at + row.itemsize * element.count > len(self.content):
+        if self.at + row.itemsize * element.many > len(self.content):
             raise broken_off(element)
-        return np.frombuffer(self.content, row, element.count, self.at)
+        return np.frombuffer(self.content, row, element.many, self.at)
 
     def pass_over(self, element: Element) -> None:
         """Read on behind an element."""
@@ -214,7 +212,7 @@ class _Bytes:
         own = element.properties[k]
         number, item = np.dtype(self.order + str(own.counted)), np.dtype(self.order + own.kind)
         at, found = self.at, []
-        for _ in range(element.count):
+        for _ in range(element.many):
             at += before
             if at + number.itemsize > len(self.content):
                 raise broken_off(element)

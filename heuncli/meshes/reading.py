@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 
 from heuncli.errors import Finding
-from heuncli.meshes.closure import loose_corners, shells_of
+from heuncli.meshes.closure import loose_corners, neighbours, shells_of
 from heuncli.meshes.crossings import require_no_crossing
 from heuncli.meshes.model import Soup, TriangleMesh
 from heuncli.meshes.numbers import refused
@@ -39,8 +39,9 @@ def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
             notes.append(f"corners less than {resolution(soup.corners):.2g} of its units apart were taken as one")
     if not len(soup.triangles):
         raise refused("there are no triangles in it", "a solid's surface, in triangles")
-    shells = shells_of(soup)
-    require_no_crossing(soup.corners, shells.triangles, resolution(soup.corners))
+    beside = neighbours(soup)
+    require_no_crossing(soup.corners, soup.triangles, resolution(soup.corners))
+    shells = shells_of(soup, beside)
     if shells.turned:
         notes.append("its triangles were turned inward; they are taken as outward")
     used, triangles = np.unique(shells.triangles, return_inverse=True)

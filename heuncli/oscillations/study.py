@@ -28,6 +28,7 @@ from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import Setup, set_up
+from heuncli.tree.held_speeds import holds_speed
 
 REST_HINT = "analysis: {type: rest} looks for the pose that rests"
 NEARLY = "look for it from nearer by: draw the scene closer to where it rests"
@@ -60,6 +61,13 @@ def looked_for(spec: Spec) -> FoundModes:
     """All small motions of a spec's scene. Raises SolveError where there is no state to oscillate about."""
     setup = set_up_at_rest(spec) if spec.analysis.type == "rest" else set_up(spec, reduce=False)
     require_no_time(setup)
+    if holds_speed(setup.scene.layout).any() and setup.spec.analysis.type != "rest":
+        from heuncli.linearisation.rolling import rolling_modes, rolls_on  # few scenes have wheels
+
+        here = looked_at(setup)
+        if rolls_on(here):
+            require_slopes(here)
+            return FoundModes(here, "state", rolling_modes(here))
     here, at, beside = state_of(setup)
     require_slopes(here)
     return FoundModes(here, at, as_known(oscillations(here.system, here.loose), here, beside))

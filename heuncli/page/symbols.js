@@ -141,10 +141,34 @@ export function drawJoint(pen, view, poses, joint, colours, small) {
   }
 }
 
-/** A spring as a zigzag, an actuator as a cylinder with its rod. */
+/** A bushing: two sleeves about its `to` point, and between them what gives way. */
+function drawBushing(pen, view, line, a, b, colours) {
+  polyline(pen, [a, b], colours.ink, 1);
+  if (line.a < 0 || line.b < 0) standing(pen, view, line.a < 0 ? a : b, colours);
+  ring(pen, b[0], b[1], 9, colours.paper, colours.ink, 1.8);
+  for (let k = 0; k < 6; k += 1) {
+    const [x, y] = [Math.cos((k * Math.PI) / 3), Math.sin((k * Math.PI) / 3)];
+    polyline(
+      pen,
+      [
+        [b[0] + 4 * x, b[1] + 4 * y],
+        [b[0] + 8.4 * x, b[1] + 8.4 * y],
+      ],
+      colours.ink,
+      1.2,
+    );
+  }
+  ring(pen, b[0], b[1], 3.4, colours.paper, colours.ink, 1.8);
+}
+
+/** A spring as a zigzag, an actuator as a cylinder with its rod, a bushing as two sleeves. */
 export function drawLine(pen, view, poses, line, colours) {
   const a = view.project(stands(poses, line.a, line.p));
   const b = view.project(stands(poses, line.b, line.q));
+  if (line.kind === "bushing") {
+    drawBushing(pen, view, line, a.slice(0, 2), b.slice(0, 2), colours);
+    return;
+  }
   const long = Math.hypot(b[0] - a[0], b[1] - a[1]) || 1;
   const place = placer(a, [(b[0] - a[0]) / long, (b[1] - a[1]) / long]);
   const at = (share, aside = 0) => place(share * long, aside);

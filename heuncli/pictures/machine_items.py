@@ -19,9 +19,9 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machine
 from heuncli.scenery.poses import Poses
-from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, solid_of
+from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, silhouette, solid_of
 from heuncli.scenery.views import SceneView
-from heuncli.spec.models import Spec, Spring
+from heuncli.spec.models import Bushing, Spec, Spring
 
 PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
 DRIVEN, APPLIED = 3, 3
@@ -137,6 +137,9 @@ def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPi
         if body.spread:
             yield SeenPiece(-np.inf, area(around), (Polygon(body.name, around, pen, filled=not thin, width=THIN),))
             continue
+        if not solid.surface.convex:
+            yield _mesh(stood, body, solid, k, thin)
+            continue
         lines: tuple[Item, ...] = ()
         if not thin:
             edges = edges_seen(solid, stood.poses.attitudes[body.name][k], stood.view)
@@ -150,6 +153,23 @@ def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPi
             width = ARM if stood.solids[body.name] else BAR
             strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
             yield SeenPiece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
+
+
+def _mesh(stood: Stood, body: BodyLook, solid: SeenSolid, k: int, thin: bool) -> SeenPiece:
+    """A body of any form: its silhouette, one sees through its holes, and its edges on this side."""
+    pen = stood.pens[body.name]
+    R = stood.poses.attitudes[body.name][k]
+    flat = stood.seen(body.name, solid.surface.corners, k)
+    lines = [flat[line] for line in silhouette(solid, R, stood.view)]
+    around = np.concatenate([np.concatenate([line, line[:1]]) for line in lines] or [flat[:0]])
+    back = [line[:1] for line in lines[-2::-1]]  # the way between the lines, there and back, has no width
+    rims = [np.stack([line, np.roll(line, -1, axis=0)], axis=1) for line in lines]
+    items: list[Item] = [Polygon(body.name, np.concatenate([around, *back]), pen, solid=not thin, outlined=False)]
+    items.append(Strokes(np.concatenate([flat[:0].reshape(0, 2, 2), *rims]), pen, THIN if thin else 1.3))
+    if not thin:
+        items.append(Strokes(stood.seen(body.name, edges_seen(solid, R, stood.view), k), pen, THIN))
+    depth = float(stood.view.depth(stood.poses.at(body.name, solid.surface.corners, k)).mean())
+    return SeenPiece(depth, sum(abs(area(stood.size * line)) for line in lines), tuple(items))
 
 
 def on_paper(place: Array) -> tuple[float, float]:
@@ -241,8 +261,25 @@ def _rod(stood: Stood, look: JointLook, k: int, thin: bool) -> list[Item]:
 def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[Item]:
     """A spring, damped or not, or an actuator."""
     force = stood.spec.forces[look.name]
+    if isinstance(force, Bushing):
+        return _bushing(stood, look, k, thin)
     kind = "damped spring" if isinstance(force, Spring) and force.damping else look.kind
     return _link(stood, look, kind, APPLIED, k, thin)
+
+
+def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:
+    """Two sleeves about its `to` point, with the ground behind them where it stands on that; moved apart: a line."""
+    first, second = (stood.seen(*end, k) for end in ((look.a, look.p), (look.b, look.q)))
+    apart = Strokes(np.array([[first, second]]), APPLIED, THIN)
+    if thin:
+        return [apart]
+    items: list[Item] = [apart]
+    for body, place in ((look.a, first), (look.b, second)):
+        if body == GROUND:
+            other = look.b if body == look.a else look.a
+            below = ground_side(place, stood.seen(other, stood.centers[other], k))
+            items.append(Symbol(*on_paper(place), "foot", below, None, f"{look.name}: on the ground"))
+    return [*items, Symbol(*on_paper(second), "bushing", (1.0, 0.0), APPLIED, f"{look.name}: bushing")]
 
 
 def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin: bool) -> list[Item]:
@@ -264,7 +301,7 @@ def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     looks = {look.name: look for look in stood.machine.joints}
     acting = [(drive.joint, drive.name, "drive", DRIVEN) for drive in stood.spec.drives.values()]
     for name, force in stood.spec.forces.items():
-        if force.type in ("torque", "turn_spring"):
+        if force.type in ("torque", "turn_spring", "motor"):
             acting.append((force.joint, name, force.type, APPLIED))
     for joint_name, name, what, pen in acting:
         look = looks[joint_name]

@@ -25,14 +25,14 @@ from heuncli.scenery.machine import Machine, machine_of
 from heuncli.scenery.poses import Poses, poses_at_start, poses_of
 from heuncli.scenery.solids import ROUND
 from heuncli.scenery.views import usual, view_of
-from heuncli.spec.models import Damper, Friction, Spec, Torque, TurnSpring
+from heuncli.spec.models import Damper, Friction, Motor, Spec, Torque, TurnSpring
 from heuncli.study.model.setup import draw
 from heuncli.tree.prepare import PreparedScene
 
 HEIGHT = 520.0  # pixels of a picture, at most
 STRIP = 0.13  # of the larger side, below what is drawn: for the key of arrows, axes and gravity
 CORNER = 0.05  # of the larger side: the arrows of axes and gravity
-IN_JOINTS = (Damper, Friction, Torque, TurnSpring)
+IN_JOINTS = (Damper, Friction, Motor, Torque, TurnSpring)
 SMOOTH, MANY = 60, 40  # faces about an axis, and of up to how many bodies
 LATER = 7  # the pen of what names later instants
 

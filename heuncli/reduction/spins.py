@@ -199,6 +199,9 @@ def free_to_turn(mechanism: Mechanism) -> dict[int, list[Array]]:
         elif "turning" in JOINTS[mechanism.joints[load.joint].kind].motions:
             acts(mechanism.joints[load.joint].a, None)
             acts(mechanism.joints[load.joint].b, None)
+    for coupling in mechanism.couplings:
+        for body in coupling.bodies:
+            acts(body, None)
     for named in mechanism.points.values():
         acts(named.body, named.place)
     for blow in mechanism.blows:

@@ -71,6 +71,7 @@ def choices_of(scene: PreparedScene) -> Choices:
     joints = mechanism.joints
     used = {joints[load.joint].name for load in mechanism.loads if isinstance(load, JointLoad)}
     used |= {joints[stop.joint].name for stop in mechanism.stops}
+    used |= {joints[k].name for coupling in mechanism.couplings for k in coupling.joints}
     used |= {name for value in mechanism.expressions() for name, _ in value.uses}
     along = open_directions(scene)
     found: dict[int, tuple[Joint, ...]] = {}

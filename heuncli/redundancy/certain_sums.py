@@ -46,7 +46,7 @@ def certain_sums(poses: Shares, asked: Shares, values: Mapping[str, Array], leng
 
 def is_force(name: str) -> bool:
     """Whether a component is of a force, and not of a moment: `joints.a.force.x`, `couplings.mesh.force`."""
-    return "force" in name.split(".")[2:3]
+    return "moment" not in name.split(".")[2:3]
 
 
 def relations(rows: Mapping[str, Array]) -> tuple[list[dict[str, float]], list[str]]:

@@ -13,6 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.coupling_numbers import numbers_of
 from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
 from heuncli.kinetostatics.joint_axes import components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
@@ -99,12 +100,16 @@ def open_support(block: Block, share: Array, stress: SelfStress) -> None:
 
 def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> None:
     """Open components of a coupling's block, in place: of what it carries, and of what it exerts ON each body."""
-    name = loads.carries
-    length = stress.length if name == "moment" else 1.0
-    row = stress.multipliers[:, loads.rows[0]][:, None]
-    parts = {name: np.asarray(stress.reaches(row, length)[:, 0])}
+    parts: dict[str, Mask] = {}
+    for number in numbers_of(loads):
+        rows = stress.multipliers[:, [loads.rows[k] for k in number.rows]]
+        parts[number.name] = np.asarray(stress.reaches(rows, stress.length if number.is_moment else 1.0).any(axis=1))
     for own in (block, *block.get("shares", {}).values()):
-        own[name] = opened(own[name], parts[name])
+        for name in parts.keys() & own.keys():
+            own[name] = opened(own[name], parts[name])
+    for beside in ("radial", "axial", "normal", "torque", "tight", "slack"):
+        if beside in block and beside not in parts and np.any(block[beside]):
+            block[beside], parts[beside] = opened(block[beside], parts[loads.carries]), parts[loads.carries]
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]
     for i, (end, own) in enumerate(block["on"].items()):

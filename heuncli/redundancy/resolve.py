@@ -10,6 +10,7 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.kinetostatics.coupling_numbers import components_of
 from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.kinetostatics.joint_axes import axes_at, components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
@@ -204,17 +205,17 @@ def sums_of(
         name = f"joints.{load.joint.name}.{'force' if i < 3 else 'moment'}.{'xyz'[i % 3]}"
         poses[name], asked[name] = in_poses[n], at_instants[n]
         values[name] = (load.force if i < 3 else load.moment)[:, i % 3]
-    for loads in couplings:
-        r = loads.rows[0]
-        at = relative_multipliers(stress, r)
+    for loads, number in ((own, number) for own in couplings for number in components_of(own)):
+        r = loads.rows[number.rows[0]]
+        at = number.factor * relative_multipliers(stress, r)
         if np.abs(at).max(initial=0.0) * stress.coupled[r] <= tolerances.OPEN_SHARE:
             continue
-        name = f"couplings.{loads.coupling.name}.{loads.carries}"
+        name = f"couplings.{loads.coupling.name}.{number.name}"
         picked = at[:, pick]
         if beside is not None:
-            picked = one_after_the_other(picked, relative_multipliers(beside, r))
+            picked = one_after_the_other(picked, number.factor * relative_multipliers(beside, r))
         poses[name], asked[name] = picked[0], at[0]
-        values[name] = loads.multipliers[0]
+        values[name] = number.values
     return certain_sums(poses, asked, values, stress.length)
 
 

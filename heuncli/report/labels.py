@@ -19,7 +19,7 @@ from heuncli.records import record
 from heuncli.report.table_units import Units
 from heuncli.spec.models import End, Force, Friction, Section, Spec, Stop, Vec
 
-PUSHING_FORCES = frozenset({"force", "distributed", "actuator", "spring", "bushing"})
+PUSHING_FORCES = frozenset({"force", "distributed", "bushing", "actuator", "spring"})
 AXES = ("x", "y", "z")
 ABOUT = {"at": "the cut's point", "centroid": "the cut's centroid", "line": "the cut's point, and Heun's line"}
 

@@ -149,11 +149,15 @@ STOPS = TablePlan(
     lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
     _stop_note,
 )
+COUPLED = (
+    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
+    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
+)
 COUPLINGS = TablePlan(
     "joints",
     "couplings",
     "coupling",
-    ("force", "moment", "contact", "pressure_angle"),
+    COUPLED,
     lambda results, labels: "COUPLINGS  the load that each carries",
 )
 SECTIONS = TablePlan(
@@ -205,8 +209,11 @@ PLANS = (
         "forces",
         "forces",
         "force",
-        ("value", "length", "angle", "rate", "power"),
-        lambda results, labels: "FORCES  value, length of its line, angle of a turn spring, their rate, power put in",
+        ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+        lambda results, labels: (
+            "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
+            + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
+        ),
         _force_note,
     ),
     ENERGY,

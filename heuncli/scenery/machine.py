@@ -1,8 +1,8 @@
 """A scene as something to look at: what its bodies look like in their own axes, and where its joints and loads stand.
 
 Everything is in body axes [m]; where it comes to stand at an instant follows from the body's pose. A body with shapes
-looks like them, with arms to points outside them; one without is drawn as lines between its points, or, where these
-are one place, as the ellipsoid that has its inertia.
+looks like them, with arms to points outside them; one without is drawn as the wheel that it is, as lines between its
+points, or, where these are one place, as the ellipsoid that has its inertia.
 """
 
 from __future__ import annotations
@@ -14,7 +14,8 @@ import numpy as np
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
-from heuncli.spec.models import Actuator, Shape, Spec, Spring
+from heuncli.scenery.wheels import spokes, wheel_shapes
+from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 
 GROUND = "ground"
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
@@ -47,7 +48,7 @@ class JointLook(NamedTuple):
 
 
 class LineLook(NamedTuple):
-    """What acts or holds along a line between two points: a spring, an actuator, a rod, a rope."""
+    """What acts or holds between two points: a spring, an actuator, a rod, a rope, a bushing."""
 
     name: str
     kind: str
@@ -76,7 +77,7 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     lines = tuple(
         LineLook(name, f.type, f.from_.body, np.array(f.from_.point), f.to.body, np.array(f.to.point))
         for name, f in spec.forces.items()
-        if isinstance(f, Spring | Actuator)
+        if isinstance(f, Spring | Actuator | Bushing)
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
@@ -90,11 +91,11 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     ends = [j.p for j in joints if j.a == name] + [j.q for j in joints if j.b == name]
     ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
     ends += points.values()
-    shapes = body.shapes or ()
+    shapes = body.shapes or tuple(wheel_shapes(spec, name))
     surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        return BodyLook(name, points, surfaces, tuple(_arms(shapes, ends)))
+        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name)))
     # of point masses alone neither centre nor inertia is known yet, nor needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
     line = _through([*ends, *centre])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -69,6 +71,39 @@ def outline(points: Array) -> Array:
             half.append((x, y))
         halves += half[:-1]
     return np.array(halves)
+
+
+def silhouette(solid: SeenSolid, rotation: Array, view: SceneView) -> list[Indices]:
+    """The closed lines, by the numbers of their corners, at which what is seen of a surface ends, to its left what is.
+
+    They wind about each place as often as the surface lies over it: about none where one sees through a hole. Of a
+    thinned surface a triangle here and there is turned over; lines about such a one are left out.
+    """
+    seen = solid.normals @ (rotation.T @ view.toward) > 0.0
+    faces = np.array([face for face, looks in zip(solid.surface.faces, seen.tolist(), strict=True) if looks], np.intp)
+    ends = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1).reshape(-1, 2) if len(faces) else faces.reshape(0, 2)
+    left = Counter(map(tuple, ends.tolist()))
+    following: dict[int, list[int]] = {}
+    for (a, b), count in left.items():
+        following.setdefault(a, []).extend([b] * max(0, count - left[b, a]))
+    lines = [np.array(line, dtype=np.intp) for line in _closed_lines(following)]
+    return [line for line in lines if _length(solid.surface.corners[line]) > solid.surface.blur]
+
+
+def _length(line: Array) -> float:
+    """Of a closed line through corners (n, 3)."""
+    way = np.roll(line, -1, axis=0) - line
+    return float(np.sqrt((way * way).sum(axis=1)).sum())
+
+
+def _closed_lines(following: dict[int, list[int]]) -> Iterator[list[int]]:
+    """The closed lines of corners of which as many lines come as go; empties `following`."""
+    for start in following:
+        while following[start]:
+            line = [start]
+            while (onward := following[line[-1]].pop()) != start:
+                line.append(onward)
+            yield line
 
 
 def edges_seen(solid: SeenSolid, rotation: Array, view: SceneView) -> Array:

@@ -9,18 +9,22 @@ from heuncli.results import Array
 from heuncli.spec.models import Shape, Vec
 
 ROUND = 24  # faces about an axis
+OVERTURNED = 8.0  # cells: as long may lines be about triangles that are turned over where a mesh is thinned
 THIN = 0.015  # radius of a rod that has none, of its length
 
 
 class Surface(NamedTuple):
     """Faces over corners (n, 3), each a tuple of their numbers, counter-clockwise from outside; and edges to be drawn.
 
-    edges: polylines (k, 3): the rims and ridges by which the shape is known.
+    edges: polylines (k, 3): the rims and ridges by which the shape is known. convex: whether it is seen as the hull of
+    its corners; a ring is as its outer rim. blur [m]: lines of its silhouette that are shorter are none.
     """
 
     corners: Array
     faces: tuple[tuple[int, ...], ...]
     edges: tuple[Array, ...]
+    convex: bool = True
+    blur: float = 0.0
 
 
 def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
@@ -29,6 +33,8 @@ def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
         return ()
     if shape.type == "box":
         return (_box(shape),)
+    if shape.type == "mesh":
+        return (_mesh(shape),)
     if shape.type == "sphere":
         return (_sphere(_vector(shape.center), shape.radius or 0.0, faces),)
     start, end = _vector(shape.from_), _vector(shape.to)
@@ -43,7 +49,8 @@ def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
 def reached(shape: Shape, point: Array) -> tuple[Array, float]:
     """The place of a shape that leads to a point, and how far outside the shape the point lies; 0: it does not.
 
-    That is on its axis, of a box on its surface, of a sphere and a point mass its centre.
+    That is on its axis, of a box on its surface, of a sphere and a point mass its centre, of a mesh a corner. Outside a
+    mesh is what is outside its extent: a bore's axis is in it.
     """
     if shape.type == "point":
         place = _vector(shape.at)
@@ -53,6 +60,11 @@ def reached(shape: Shape, point: Array) -> tuple[Array, float]:
         half = 0.5 * _vector(shape.size)
         place = _vector(shape.center) + axes @ np.clip(axes.T @ (point - _vector(shape.center)), -half, half)
         return place, float(np.linalg.norm(point - place))
+    if shape.type == "mesh":
+        corners = corners_of(shape)
+        place = corners[int(((corners - point) ** 2).sum(axis=1).argmin())]
+        off = np.maximum(np.maximum(corners.min(axis=0) - point, point - corners.max(axis=0)), 0.0)
+        return place, float(np.linalg.norm(off))
     if shape.type == "sphere":
         place = _vector(shape.center)
         return place, max(0.0, float(np.linalg.norm(point - place)) - (shape.radius or 0.0))
@@ -84,6 +96,25 @@ def ellipsoid(mass: float, center: Array, inertia: Array, faces: int = ROUND) ->
 
 def _vector(vector: Vec | None) -> Array:
     return np.array(vector, dtype=np.float64)
+
+
+def corners_of(mesh: Shape) -> Array:
+    """The corners of a mesh, (n, 3), in body axes."""
+    assert mesh.mesh is not None and mesh.scale is not None
+    return np.asarray(_vector(mesh.at) + (mesh.scale * mesh.mesh.corners) @ np.array(mesh.rotation).T)
+
+
+def _mesh(shape: Shape) -> Surface:
+    """Its triangles, of many some, and the edges between those that do not look the same way."""
+    from heuncli.scenery.thinned import sharp_edges, thinned  # few scenes have them
+
+    assert shape.mesh is not None
+    corners, triangles = corners_of(shape), shape.mesh.triangles
+    drawn = thinned(corners, triangles)
+    ends = np.unique(np.sort(drawn.number[sharp_edges(corners, triangles)], axis=1), axis=0)
+    edges = drawn.corners[ends[ends[:, 0] < ends[:, 1]]]
+    faces = tuple(map(tuple, drawn.triangles.tolist()))
+    return Surface(drawn.corners, faces, tuple(edges), convex=False, blur=OVERTURNED * drawn.cell)
 
 
 def _box(shape: Shape) -> Surface:

@@ -1,8 +1,8 @@
 """Which triangles of a closed surface parallel planes cross, and where.
 
     X (n, 3)   corners, the third coordinate along the planes' normal        D (k,)   heights of the planes, ascending
-A corner is above a plane or not, one exactly in it is not: as if the plane lay a hair higher. So it is for all triangles
-that share the corner, and what the plane meets is closed lines, wherever corners, edges and faces lie.
+A corner is above a plane or not, one exactly in it is not: as if the plane lay a hair higher. So it is for all
+triangles that share the corner, and what the plane meets is closed lines, wherever corners, edges and faces lie.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ import numpy as np
 
 from heuncli.meshes.model import components, least, most
 from heuncli.records import record
-from heuncli.results import Array, Indices
+from heuncli.results import Array, Indices, Mask
 
 FIRST, NEXT, LAST = np.array([0, 1, 2]), np.array([1, 2, 0]), np.array([2, 0, 1])
 AT_ONCE = 1 << 20  # crossings of triangles and planes that are looked at together
@@ -29,7 +29,7 @@ class Crossings:
     triangle: Indices
     plane: Indices
     lone: Indices
-    up: Array
+    up: Mask
     h: Array
     part: Array
 

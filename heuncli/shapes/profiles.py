@@ -6,9 +6,9 @@ I2 = Ixx, I12 = Ixy; e1 and e2 are principal where I12 = 0. Torsion, by a stress
 whose slope is A(t)/L(t) (t the distance, A(t) and L(t) of what is farther inside; Makai, 1959; Polya, 1960):
 
     J >= 4 int A(t)^2/L(t) dt >= 4 A^3/(3 L^2),   L the length of all edges
-if there are no more holes than parts, for then L(t) <= L; of thin walls J itself, of a circle two thirds. Where there are
-more, L(t) <= L + 2 pi (holes - parts) rho, rho <= sqrt(A/pi) the radius of a circle that fits in. A closed thin wall
-counts as one that is slit.
+if there are no more holes than parts, for then L(t) <= L; of thin walls J itself, of a circle two thirds. Where there
+are more, L(t) <= L + 2 pi (holes - parts) rho, rho <= sqrt(A/pi) the radius of a circle that fits in. A closed thin
+wall counts as one that is slit.
 """
 
 from __future__ import annotations
@@ -87,16 +87,17 @@ def edges_of(part: Polyhedron, local: LocalSurface) -> Iterator[Edges2]:
 
 def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurface) -> tuple[Array, dict[int, str]]:
     """Area, I1, I2, J, c1, c2 (6, k) of planes, and why they are not known, by the planes' numbers."""
+    length = np.sqrt(((edges.q - edges.p) ** 2).sum(axis=1))
+    L = np.bincount(edges.plane, length, k)
     A, Sx, Sy = edges.moments(np.zeros((k, 2)))[:3]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        centroid = np.nan_to_num(np.stack([Sx / A, Sy / A], axis=1))
+    thick = A > tolerances.EPS * L * L
+    area = np.where(thick, A, 1.0)
+    centroid = np.where(thick, [Sx, Sy], 0.0).T / area[:, None]
     A, _, _, I2, I12, I1, *thirds = edges.moments(centroid)
     off = np.abs(edges.p - centroid[edges.plane])
     c1, c2 = np.zeros(k), np.zeros(k)
     np.maximum.at(c1, edges.plane, off[:, 0])
     np.maximum.at(c2, edges.plane, off[:, 1])
-    length = np.sqrt(((edges.q - edges.p) ** 2).sum(axis=1))
-    L = np.bincount(edges.plane, length, k)
     parts, holes = counted(edges, length, k, near)
     longest = L + 2.0 * np.sqrt(np.pi) * np.maximum(holes - parts, 0) * np.sqrt(np.abs(A))
     size = A * np.maximum(c1, c2) ** 3
@@ -106,12 +107,13 @@ def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurfac
         lopsided = np.abs(thirds).max(axis=0) / size
     missing: dict[int, str] = {}
     for i in np.flatnonzero(met).tolist():
-        if parts[i] != 1:
+        if not thick[i]:
+            missing[i] = "the cut has no area"
+        elif parts[i] != 1:
             missing[i] = f"the outline of the mesh has {int(parts[i])} parts"
         elif not turned[i] <= tolerances.OUTLINE_PRINCIPAL:
-            missing[i] = (
-                f"e1 is no principal axis of the outline (as first_axis: [{_axis(I1[i], I2[i], I12[i], local)}] is)"
-            )
+            axis = _axis(I1[i], I2[i], I12[i], local)
+            missing[i] = f"e1 is no principal axis of the outline (as first_axis: [{axis}] is)"
         elif not lopsided[i] <= tolerances.OUTLINE_SYMMETRIC:
             missing[i] = "shear forces twist the outline, which is not the same turned by 180 degrees"
     return np.array([A, I1, I2, J, c1, c2]), missing
@@ -124,9 +126,8 @@ def counted(edges: Edges2, length: Array, k: int, near: float) -> tuple[Indices,
     around = np.bincount(edges.line, length)
     plane = np.zeros(len(areas), dtype=np.intp)
     plane[edges.line] = edges.plane
-    return np.bincount(plane[areas > near * around], minlength=k), np.bincount(
-        plane[areas < -near * around], minlength=k
-    )
+    parts, holes = plane[areas > near * around], plane[areas < -near * around]
+    return np.bincount(parts, minlength=k), np.bincount(holes, minlength=k)
 
 
 def _axis(I1: float, I2: float, I12: float, local: LocalSurface) -> str:

@@ -20,9 +20,11 @@ from heuncli.shapes.outlines import Outline, circle
 
 
 class Solid(Protocol):
-    """A homogeneous shape in body axes; near [m]: how far off a plane its corners may be that are meant to lie in it."""
+    """A homogeneous shape in body axes."""
 
-    near: float
+    @property
+    def near(self) -> float:
+        """How far off a plane its corners may be that are meant to lie in it [m]."""
 
     def whole(self) -> Array:
         """Pseudo-inertia about the body's origin, (4, 4)."""

@@ -6,6 +6,7 @@ from heuncli.spec import format as f
 from heuncli.spec import format_couplings as fc
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.entries import Entry
+from heuncli.spec.format_rolling import RollingEntry
 
 # by heading: the model whose keys the first table below it lists, or the models by type
 CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
@@ -24,6 +25,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     "Stops": f.StopEntry,
     "Latches": f.LatchEntry,
     **fc.COUPLINGS,
+    "Rolling": RollingEntry,
     "Sections": f.SectionEntry,
     "Properties": f.PropertiesEntry,
     "Analysis": f.AnalysisEntry,

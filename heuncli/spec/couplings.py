@@ -11,7 +11,7 @@ from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
-    from heuncli.spec.models import End
+    from heuncli.spec.models import End, Vec  # which knows this module
 
 
 class Term(NamedTuple):
@@ -38,6 +38,30 @@ class Ratio(NamedTuple):
     def joints(self) -> tuple[str, ...]:
         """The joints that it couples."""
         return joints_of(self.terms)
+
+
+class RollingWheel(NamedTuple):
+    """A wheel that rolls on a plane.
+
+    wheel: its centre; axis: its axle, in its own axes, None: a sphere. on: a point of the plane; normal: towards the
+    wheel, in the axes of the body that has the plane. friction: the coefficient from which on it slips, None: never.
+    slides: it does not roll along its track, and only does not slip aside. held: the plane can pull it, too.
+    """
+
+    wheel: End
+    axis: Vec | None
+    radius: float
+    on: End
+    normal: Vec
+    friction: float | None = None
+    slides: bool = False
+    held: bool = False
+    type: Literal["wheel"] = "wheel"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: a wheel counts by no coordinate."""
+        return ()
 
 
 class Gear(NamedTuple):
@@ -130,4 +154,57 @@ class Cam(NamedTuple):
         return self.shaft, self.follower
 
 
-Coupling = Ratio | Gear | Screw | Belt | Differential | Cam  # a union of the classes here
+class Passage(NamedTuple):
+    """Where a rope passes: a point of a body, radius 0, or a sheave about it.
+
+    axis: of the sheave, body axes, None: that of the pin there; side: past which the rope runs, None: the shortest way;
+    grips: the rope does not slip on the sheave.
+    """
+
+    end: End
+    radius: float = 0.0
+    axis: tuple[float, float, float] | None = None
+    side: Literal["over", "under", "left", "right"] | None = None
+    grips: bool = False
+
+
+class Rope(NamedTuple):
+    """A rope without mass through points and over sheaves; length [m], None: as assembled.
+
+    tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
+    """
+
+    through: tuple[Passage, ...]
+    length: float | None = None
+    tension_only: bool = False
+    restitution: float | None = None
+    type: Literal["rope"] = "rope"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """None: it couples bodies."""
+        return ()
+
+    @property
+    def gripped(self) -> frozenset[str]:
+        """The bodies with sheaves on which it does not slip."""
+        return frozenset(x.end.body for x in self.through if x.grips)
+
+
+class ConstantVelocity(NamedTuple):
+    """What makes of a ball a constant-velocity joint: shafts along axis in `from`, to_axis in `to`, turn alike."""
+
+    joint: str
+    axis: tuple[float, float, float]
+    to_axis: tuple[float, float, float]
+    type: Literal["cv"] = "cv"
+
+    @property
+    def joints(self) -> tuple[str, ...]:
+        """The ball."""
+        return (self.joint,)
+
+
+Coupling = (  # a union of the classes here
+    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope | ConstantVelocity
+)

@@ -31,7 +31,6 @@ from heuncli.spec.fields import (
     Either,
     EitherInTime,
     Expected,
-    Force,
     ForceInTime,
     FormatVersion,
     Impulse,
@@ -42,11 +41,8 @@ from heuncli.spec.fields import (
     LengthLimits,
     LineForceInTime,
     Mass,
-    Moment,
     MomentInTime,
-    MotorCurve,
     Number,
-    NumberInTime,
     OwnDamperForce,
     OwnDamperTorque,
     OwnSpringForce,
@@ -57,7 +53,6 @@ from heuncli.spec.fields import (
     Pressure,
     Rate,
     RateInTime,
-    ShiftLaw,
     Stiffness,
     StrikeInTime,
     Switch,
@@ -66,11 +61,12 @@ from heuncli.spec.fields import (
     TruthInTime,
     TurningDamping,
     TurningStiffness,
-    TurnLaw,
     Velocity,
     VelocityInTime,
 )
 from heuncli.spec.format_couplings import COUPLINGS, CouplingEntry
+from heuncli.spec.format_elastic import BushingEntry, MotorEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.format_shapes import Orientation, ShapeEntry
 from heuncli.spec.words import SEVERAL
 
@@ -359,71 +355,6 @@ class DamperEntry(Entry):
     force: OwnDamperForce | None = None
 
 
-class MotorEntry(Entry):
-    type: Literal["motor"]
-    joint: str
-    curve: MotorCurve
-    ratio: Number = 1.0
-    limit: Moment | None = None
-    value: NumberInTime | None = None
-
-
-class ShiftLaws(Entry):
-    """Of a bushing's shift, axis by axis."""
-
-    x: ShiftLaw = 0.0
-    y: ShiftLaw = 0.0
-    z: ShiftLaw = 0.0
-
-
-class TurnLaws(Entry):
-    """Of a bushing's turning, axis by axis."""
-
-    x: TurnLaw = 0.0
-    y: TurnLaw = 0.0
-    z: TurnLaw = 0.0
-
-
-class BushingEntry(Entry):
-    type: Literal["bushing"]
-    from_: AnEnd = key(alias="from")
-    to: AnEnd
-    stiffness: (
-        Annotated[
-            Annotated[ShiftLaw, Tag("single")]
-            | Annotated[tuple[ShiftLaw, ShiftLaw, ShiftLaw], Tag("list")]
-            | Annotated[ShiftLaws, Tag("mapping")],
-            FORM,
-        ]
-        | None
-    ) = None
-    turning: (
-        Annotated[
-            Annotated[TurnLaw, Tag("single")]
-            | Annotated[tuple[TurnLaw, TurnLaw, TurnLaw], Tag("list")]
-            | Annotated[TurnLaws, Tag("mapping")],
-            FORM,
-        ]
-        | None
-    ) = None
-    damping: (
-        Annotated[Annotated[Damping, Tag("single")] | Annotated[tuple[Damping, Damping, Damping], Tag("list")], FORM]
-        | None
-    ) = None
-    turning_damping: (
-        Annotated[
-            Annotated[TurningDamping, Tag("single")]
-            | Annotated[tuple[TurningDamping, TurningDamping, TurningDamping], Tag("list")],
-            FORM,
-        ]
-        | None
-    ) = None
-    preload: tuple[Force, Force, Force] | None = None
-    turning_preload: tuple[Moment, Moment, Moment] | None = None
-    orientation: Orientation | None = None
-    to_orientation: Orientation | None = None
-
-
 class FrictionEntry(Entry):
     type: Literal["friction"]
     joint: str
@@ -636,7 +567,8 @@ class HeadEntry(Entry):
 
 ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
     "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
-    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "sections": SectionEntry, "cases": CaseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
+    "sections": SectionEntry, "cases": CaseEntry,
 }  # fmt: skip
 SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
 READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
@@ -654,6 +586,7 @@ class Document(NamedTuple):
     impulses: dict[str, ImpulseEntry]
     stops: dict[str, StopEntry]
     couplings: dict[str, CouplingEntry]
+    rolling: dict[str, RollingEntry]
     latches: dict[str, LatchEntry]
     sections: dict[str, SectionEntry]
     cases: dict[str, CaseEntry]

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
-from typing import Literal
+from typing import Annotated, Any, Literal
 
-from heuncli.spec.entries import Entry, key
-from heuncli.spec.fields import AnEnd, Angle, Anything, Direction, Force, Length, Lift, Number, Switch
+from heuncli.spec.entries import Before, Entry, key
+from heuncli.spec.fields import AnEnd, Angle, Anything, AsText, Direction, Force, Length, Lift, Number, Switch
 
 
 class RatioEntry(Entry):
@@ -45,8 +45,8 @@ class BeltEntry(Entry):
     type: Literal["belt"]
     of: list[str]
     radii: list[Length]
+    pretension: Force
     crossed: Switch = False
-    pretension: Force = 0.0
 
 
 class DifferentialEntry(Entry):
@@ -71,8 +71,45 @@ class CamEntry(Entry):
     restitution: Number | None = None
 
 
-CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry
+class PassageEntry(Entry):
+    """Where a rope passes: a point, or a sheave about one."""
+
+    point: AnEnd | None = None
+    sheave: AnEnd | None = None
+    radius: Length | None = None
+    axis: Direction | None = None
+    side: Literal["over", "under", "left", "right"] | None = None
+    slip: Literal["free", "none"] = "free"
+
+
+def passage(value: Any, info: Any) -> Any:
+    """'cage.top', or {body: cage, at: [0, 0, 2]}, as {point: ...}."""
+    return {"point": value} if type(value) is str or (type(value) is dict and "body" in value) else value
+
+
+class RopeEntry(Entry):
+    """A rope through points and over sheaves."""
+
+    type: Literal["rope"]
+    through: list[Annotated[PassageEntry, Before(passage), AsText()]]
+    length: Length | None = None
+    tension_only: Switch = False
+    restitution: Number | None = None
+
+
+class ConstantVelocityEntry(Entry):
+    """What makes of a ball a constant-velocity joint."""
+
+    type: Literal["cv"]
+    joint: str
+    axis: Direction
+    to_axis: Direction | None = None
+
+
+CouplingEntry = (
+    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
+)
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
-    "cam": CamEntry,
+    "cam": CamEntry, "rope": RopeEntry, "cv": ConstantVelocityEntry,
 }  # fmt: skip

@@ -231,7 +231,7 @@ class Spring(NamedTuple):
 
 
 class TurnSpring(NamedTuple):
-    """A spring and damper about a joint's axis: N m/rad, angle where it is relaxed [rad], N m s; or its torque [N m]."""
+    """A spring and damper about a joint's axis: N m/rad, relaxed angle [rad], N m s; or its torque [N m]."""
 
     joint: str
     stiffness: float
@@ -267,7 +267,7 @@ class Elastic(Generic[V]):
 
 
 class Bushing(NamedTuple):
-    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: those in that of `to`."""
+    """Six springs and dampers between two bodies, in axes fixed in that of from_; to_rotation: in that of `to`."""
 
     from_: End
     to: End
@@ -430,7 +430,8 @@ class Condition(NamedTuple):
 class ResultCondition(NamedTuple):
     """What is watched for in the results: the number at the path `of` is below the limit, or above it.
 
-    text: as written. ends: whether the motion ends where it becomes true.
+    text: as written. ends: whether the motion ends where it becomes true. why: of one that an entry brings with it, as
+    wheels do, what it then means, in words.
     """
 
     name: str
@@ -439,6 +440,7 @@ class ResultCondition(NamedTuple):
     of: str
     limit: float
     above: bool
+    why: str = ""
 
 
 WatchedCondition = Condition | ResultCondition
@@ -532,6 +534,11 @@ class Spec(NamedTuple):
     cases: Mapping[str, str] = NO_CASES
     case: str | None = None
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
+
+    @property
+    def rolling(self) -> Mapping[str, Coupling]:
+        """The couplings that are wheels, which stand in a block of their own."""
+        return {name: given for name, given in self.couplings.items() if given.type == "wheel"}
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

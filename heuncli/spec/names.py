@@ -13,8 +13,8 @@ from heuncli.spec.models import Spec
 
 GROUND = "ground"
 NAMED = (
-    "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "sections",
-    "tables", "cases",
+    "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
+    "sections", "tables", "cases",
 )  # fmt: skip
 ALL_CASES = "all"  # what --case takes for every one of them
 UNTIL = "until"  # the condition that ends a motion, beside the events that have names
@@ -28,6 +28,7 @@ RESERVED_FOR: dict[str, frozenset[str]] = {
     "impulses": CAUSES,
     "stops": CAUSES,
     "couplings": CAUSES,
+    "rolling": CAUSES,
     "latches": CAUSES,
     "cases": frozenset({ALL_CASES}),
 }

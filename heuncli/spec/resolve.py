@@ -15,13 +15,15 @@ from heuncli.expressions.programs import LOADS, OWN, Expression, TableFunction
 from heuncli.method_rows import canonical
 from heuncli.records import record
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec import format_shapes as fs
 from heuncli.spec import models as m
 from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
+from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import meant
+from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import (
     body_axes,
     drive_of,
@@ -74,7 +76,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling"),
+        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
         latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
@@ -125,7 +127,7 @@ class Resolver:
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
-            self.conditions(analysis),
+            (*self.conditions(analysis), *(conditions_of_wheels(self.document.rolling) if kind == "motion" else ())),
             analysis.tolerance is not None,
         )  # fmt: skip
 
@@ -252,9 +254,9 @@ class Resolver:
             case f.TurnSpringEntry():
                 law = self.own(load.torque, f"{path}.torque", load.joint)
                 return m.TurnSpring(load.joint, load.stiffness or 0.0, load.angle or 0.0, load.damping or 0.0, law)
-            case f.BushingEntry():
+            case fe.BushingEntry():
                 return self.bushing(name, load)
-            case f.MotorEntry():
+            case fe.MotorEntry():
                 return self.motor(load, path)
             case f.DistributedEntry():
                 return self.distributed(load, path)
@@ -276,17 +278,17 @@ class Resolver:
             return None
         return renamed(self.placed(law, path), {use: (owner, use[1]) for use in law.uses if use[0] == OWN})
 
-    def motor(self, load: f.MotorEntry, path: str) -> m.Motor:
+    def motor(self, load: fe.MotorEntry, path: str) -> m.Motor:
         """ratio * value * curve(ratio * rate), within the limit of the motor itself."""
         law = with_factor(self.placed(load.curve, f"{path}.curve"), (OWN, "rate"), load.ratio)
         law = within(law, load.limit) if load.limit is not None else law
         if load.value is not None:
             law = product(self.placed(load.value, f"{path}.value"), law)
-        law = self.own(product(Expression.of(load.ratio), law), f"{path}.curve", load.joint)
-        assert law is not None
-        return m.Motor(load.joint, law)
+        told = self.own(product(Expression.of(load.ratio), law), f"{path}.curve", load.joint)
+        assert told is not None
+        return m.Motor(load.joint, told)
 
-    def bushing(self, name: str, load: f.BushingEntry) -> m.Bushing:
+    def bushing(self, name: str, load: fe.BushingEntry) -> m.Bushing:
         rotation = body_axes(load.orientation) if load.orientation is not None else IDENTITY
         to_rotation = body_axes(load.to_orientation) if load.to_orientation is not None else rotation
         shift = self.elastic(name, "shift", load.stiffness, load.damping, load.preload)
@@ -296,14 +298,14 @@ class Resolver:
     def elastic(self, name: str, of: str, stiffness: Any, damping: Any, preload: m.Vec | None) -> m.Elastic[m.Vec]:
         """The three springs of a bushing's shift or turn; what has no stiffness given is a table."""
         laws = three(stiffness)
-        given = tuple(Expression.of(x) for x in preload or m.ZERO)
+        given = [Expression.of(x) for x in preload or m.ZERO]
         numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
         path = f"forces.{name}.{'stiffness' if of == 'shift' else 'turning'}"
         for i, law in enumerate(laws):
             if isinstance(law, Expression):
                 placed = renamed(self.placed(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{of}_{'xyz'[i]}")})
-                given = (*given[:i], total(given[i], placed), *given[i + 1 :])
-        return m.Elastic(numbers, three(damping), given)
+                given[i] = total(given[i], placed)
+        return m.Elastic((numbers[0], numbers[1], numbers[2]), three(damping), (given[0], given[1], given[2]))
 
     def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]
@@ -375,6 +377,9 @@ class Resolver:
             numbers(item.below), numbers(item.above), self.curves.get(i),
         )  # fmt: skip
 
+    def wheel(self, name: str, given: RollingEntry) -> Coupling:
+        return wheel_meant(self, given)
+
     def coupling(self, name: str, given: CouplingEntry) -> Coupling:
         return meant(self, name, given)
 
@@ -414,7 +419,7 @@ def three(value: Any) -> tuple[Any, Any, Any]:
     """What is given of three axes: of all alike, of each in a list or by its name; what is left out is none."""
     if value is None:
         return m.ZERO
-    if isinstance(value, f.ShiftLaws | f.TurnLaws):
+    if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
         return value.x, value.y, value.z
     return value if isinstance(value, tuple) else (value, value, value)
 

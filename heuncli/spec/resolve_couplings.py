@@ -5,7 +5,8 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
-from typing import Protocol
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, Protocol
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import TYPES
@@ -13,7 +14,8 @@ from heuncli.spec import couplings as c
 from heuncli.spec import format as whole
 from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
-from heuncli.spec.models import End
+from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.models import End, ResultCondition, Z
 
 
 class Following(Protocol):
@@ -30,13 +32,39 @@ class Following(Protocol):
 
 def meant(by: Following, name: str, entry: f.CouplingEntry) -> c.Coupling:
     """The coupling that an entry means; name: of it, for the places of its expressions."""
-    return MEANINGS[entry.type](by, name, entry)
+    found: c.Coupling = MEANINGS[entry.type](by, name, entry)
+    return found
 
 
 def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
     """A linear relation of coordinates."""
     rows = zip(entry.of, entry.factors, strict=True)
     return c.Ratio(tuple(term(by, word, factor) for word, factor in rows), entry.is_)
+
+
+def wheel_meant(by: Following, entry: RollingEntry) -> c.RollingWheel:
+    """The wheel that an entry of `rolling` means; in the plane all are round about z."""
+    axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
+    return c.RollingWheel(
+        by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
+        entry.normal, entry.friction, entry.slides is not None, entry.held,
+    )  # fmt: skip
+
+
+def conditions_of_wheels(rolling: Mapping[str, RollingEntry]) -> Iterator[ResultCondition]:
+    """What is watched for of wheels: where one lifts off its plane, which ends the motion, and where one slips."""
+    for name, entry in rolling.items():
+        if not entry.held:
+            why = f"the wheel {name} lifts: it would have to be pulled onto its plane"
+            yield below_zero(f"{name}_lifts", f"couplings.{name}.normal", why, ends=True)
+        if entry.friction is not None:
+            why = f"the wheel {name} slips: it would take more friction than there is"
+            yield below_zero(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
+
+
+def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
+    """The condition that a number of the results is below zero."""
+    return ResultCondition(name, f"{of} below 0", ends, of, 0.0, False, why)
 
 
 def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:
@@ -70,7 +98,8 @@ def differential(by: Following, name: str, entry: f.DifferentialEntry) -> c.Diff
 
 def term(by: Following, word: str, factor: float = 1.0) -> c.Term:
     """A coordinate by its joint's name, which has one, or by `joint.angle`, `joint.travel`."""
-    joint, _, quantity = word.partition(".")
+    joint, _, named = word.partition(".")
+    quantity: Any = named
     return c.Term(joint, quantity or TYPES[by.document.joints[joint].type].coordinates[0], factor)
 
 
@@ -83,4 +112,26 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     )  # fmt: skip
 
 
-MEANINGS = {"ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam}
+def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
+    """A rope."""
+    through = tuple(passage(by, given) for given in entry.through)
+    return c.Rope(through, entry.length, entry.tension_only, entry.restitution)
+
+
+def passage(by: Following, given: f.PassageEntry) -> c.Passage:
+    """Where a rope passes."""
+    written = given.point if given.point is not None else given.sheave
+    assert written is not None
+    end = by.end(written)
+    return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
+
+
+def constant_velocity(by: Following, name: str, entry: f.ConstantVelocityEntry) -> c.ConstantVelocity:
+    """Two shafts in a ball that turn alike."""
+    return c.ConstantVelocity(entry.joint, entry.axis, entry.axis if entry.to_axis is None else entry.to_axis)
+
+
+MEANINGS: dict[str, Callable[..., c.Coupling]] = {
+    "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam, "rope": rope,
+    "cv": constant_velocity,
+}  # fmt: skip

@@ -5,7 +5,8 @@ from __future__ import annotations
 from heuncli.joint_kinds import SYNONYMS
 
 FORCE_WORDS = {
-    "moment": "couple", "motor": "torque", "thrust": "torque", "springdamper": "spring", "spring_damper": "spring",
+    "moment": "couple", "engine": "motor", "thrust": "torque", "bush": "bushing", "mount": "bushing",
+    "brake": "friction", "springdamper": "spring", "spring_damper": "spring",
     "dashpot": "damper", "load": "force", "cylinder": "actuator", "coulomb": "friction",
     "torsion_spring": "turn_spring", "torsional_spring": "turn_spring", "rotational_spring": "turn_spring",
     "rotary_spring": "turn_spring", "angular_spring": "turn_spring", "spiral_spring": "turn_spring",
@@ -33,7 +34,7 @@ KEY_WORDS = {
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
-    "rho": "density",
+    "rho": "density", "axle": "axis", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
@@ -89,7 +90,8 @@ FORMS = {  # what the values of some keys look like
     "rectangle": "as {width: 0.1, height: 0.2}", "circle": "as {radius: 0.1}",
     "tube": "as {radius: 0.1, inner_radius: 0.09}", "ground": "as {points: {O: [0, 0, 0]}}",
     "analysis": "as {duration: 2, samples: 201}", "initial": "as {angle: 30 deg, rate: 0}",
-    "stiffness": "one number, or {force: 2e8, moment: 1e5}", "near": "as {position: [0, 0, 1]}",
+    "stiffness": "one number, or {force: 2e8, moment: 1e5}; of a bushing [x, y, z], or {x: table, y: 2e5}",
+    "near": "as {position: [0, 0, 1]}",
     "foundation": "as {about: [0, 0, 0]}", "properties": "auto, or as {circle: {radius: 0.01}}",
     "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
     "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
@@ -110,6 +112,7 @@ MISSING = {  # what a key is that must be there
     "mass": "in kg, as 1.5", "center": "its centre: [x, y, z]", "inertia": "about its centre of mass: [A1, A2, A3]",
     "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
     "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
+    "curve": "its torque over its speed: a table, or an expression of rate",
     "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
@@ -126,14 +129,14 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
-    "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type torque",
+    "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
-    ("joints", "curve"), ("keys", "sweep"),
+    ("keys", "sweep"),
 }  # fmt: skip
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),

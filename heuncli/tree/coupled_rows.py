@@ -14,7 +14,9 @@ from heuncli.tree.starts import pose
 
 KINDS = {
     "guide": kernel.GUIDE, "dot": kernel.DOT, "rod": kernel.ROD, "turn": kernel.TURN, "mesh": kernel.MESH,
-    "cam": kernel.CAM,
+    "touches": kernel.TOUCHES, "rolls": kernel.ROLLS, "rolls_aside": kernel.ROLLS_ASIDE,
+    "ball_touches": kernel.BALL_TOUCHES, "ball_rolls": kernel.BALL_ROLLS,
+    "cam": kernel.CAM, "strand": kernel.STRAND, "arc": kernel.ARC, "wound": kernel.WOUND,
 }  # fmt: skip
 
 InTree = Callable[[int], int]  # a body's place in the tree
@@ -22,9 +24,9 @@ Relative = Callable[[int, Vector], Vector]  # a body's point from its joint poin
 
 
 def part_row(
-    part: CouplingPart, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
+    part: CouplingPart, first: int, in_tree: InTree, relative: Relative, freedoms: Mapping[tuple[int, str], int]
 ) -> ClosureRow:
-    """A condition of two bodies as the kernel's part; freedoms: of the joints' coordinates."""
+    """A condition of two bodies as the kernel's part; first: its row's first; freedoms: of the joints' coordinates."""
     counted = [(freedoms[x.joint, x.quantity], x.ratio) for x in part.coordinates]
     (freedom, ratio), (freedom_b, ratio_b) = [*counted, (0, 0.0), (0, 0.0)][:2]
     return ClosureRow(
@@ -38,10 +40,12 @@ def part_row(
         e=part.e,
         g=part.g,
         factor=part.factor,
+        radius=part.radius,
         c=in_tree(part.c),
         ratio=ratio,
         freedom_b=freedom_b,
         ratio_b=ratio_b,
+        part=first + part.strand,
     )
 
 
@@ -63,6 +67,8 @@ def as_assembled(row: CoupledRow, start: Assembly, coordinates: Mapping[tuple[in
 
 
 def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, str], float]) -> float:
+    if part.holds_speed:
+        return 0.0
     if part.coordinates:
         return sum(x.ratio * coordinates[x.joint, x.quantity] for x in part.coordinates)
     xa, Ra, _, _ = pose(start, part.a)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -151,13 +152,15 @@ class _LoadRows:
                     kind,
                     self.frame.in_tree(load.a),
                     self.frame.in_tree(load.b),
-                    *own,
+                    own[0],
+                    own[1],
+                    own[2],
                     ZERO,
                     p=self.frame.relative(load.a, load.p),
                     q=self.frame.relative(load.b, load.q),
-                    length=tolerances.LARGEST_TURN,
-                    frame=load.frame.ravel(),
-                    to_frame=load.to_frame.ravel(),
+                    length=math.pi - tolerances.TURNED_OVER,
+                    frame=load.frame.ravel().tolist(),
+                    to_frame=load.to_frame.ravel().tolist(),
                     stiffnesses=elastic.stiffness,
                     resistances=elastic.damping,
                 )

@@ -236,6 +236,7 @@ class _Builder:
         """Add the pieces of a path; which of all is the first."""
         first = len(self.pieces)
         self.pieces += [PieceRow(s, *c) for s, c in zip(path.knots[:-1].tolist(), path.coefficients, strict=True)]
+        self.pieces.append(PieceRow(path.last, *np.zeros((4, 3))))
         return first
 
     def _driven(self, h: Hang, quantity: str) -> Program | None:
@@ -351,8 +352,9 @@ class _Builder:
                 self.row_joint.append(owner)
                 length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
                 self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
+                first = len(self.part_rows)
                 for part in row.parts:
-                    made = part_row(part, self.in_tree, self.relative, freedoms)
+                    made = part_row(part, first, self.in_tree, self.relative, freedoms)
                     self.part_rows.append(with_lift(made, part, len(self.pieces), self.relative))
                     if part.cam is not None:
                         self._put_path(part.cam.lift)

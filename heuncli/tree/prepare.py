@@ -58,6 +58,10 @@ def prepare(
         from heuncli.tree.driven_starts import begun  # few scenes have drives by a rate
 
         mechanism = begun(mechanism, start)
+    if mechanism.couplings:
+        from heuncli.tree.couplings_at_start import with_started  # few scenes have them
+
+        mechanism = with_started(mechanism, start)
     scene = arranged(mechanism, start, stages=stages)
     if fit is not None:
         scene = fit(scene)

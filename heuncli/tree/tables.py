@@ -71,8 +71,8 @@ LOAD_ANSWER = _answer("force moment at from_at strain", "value span rate power")
 # f, m: ON b for a multiplier of 1, about the `to` point; closed: whether it takes part, as contacts do that are not
 # open; rate, acceleration: of its gap; terms: the size of those that its acceleration is the sum of.
 CLOSURE_ANSWER = _answer("f m", "multiplier doubt gap chosen closed rate acceleration terms")
-# f, m: ON b for the row's multiplier of 1, about Q; Q: the place.
-PART_ANSWER = _answer("f m Q")
+# f, m: ON b for the row's multiplier of 1, about Q; on_a, on_b: where they enter the bodies.
+PART_ANSWER = _answer("f m Q on_a on_b", "gap")
 STATE_ANSWER = _answer("", "gap idle pivot residual")
 # Of one column: of loads, of a cause, or of a blow (jumps of velocities, impulses of the joints).
 COLUMN_BODY = _answer("alpha a joint_moment joint_force")

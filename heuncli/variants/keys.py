@@ -1,6 +1,6 @@
 """The key of a variant: a digest of all that its answer hangs on, and of nothing else.
 
-    heun's version, measures, options  |  the spec's data with what is set in them  |  the content of its tables
+    heun's version, measures, options  |  the spec's data with what is set in them  |  the content of its tables, meshes
 
 The data are those of the YAML text, with the load case's values, what is set in all variants and the variant's own in
 their places: comments, the order of blocks and the path of the file are not in it, nor the title, nor what is expected.
@@ -9,14 +9,14 @@ A number counts as it is read: 0.1, 1e-1 and, where they give the same bits, "0.
 `tables:` every text does, for there 1 mm may be the name of a column. Two variants of one key have the same answer. Two
 of different keys may have, too: then one is solved again, and nothing is wrong.
 
-Impure: reads the files of the spec's tables, when it is made.
+Impure: reads the files of the spec's tables and meshes, when it is made.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
@@ -100,13 +100,12 @@ class VariantKeys:
     def digest(self, block: str, value: Any) -> bytes:
         """The digest of a block."""
         told = json.dumps(value, sort_keys=False) if block in VERBATIM else canonical_text(value)
-        files = ""
-        if block == "tables":
-            files = json.dumps({n: self.content(e["file"]) for n, e in mapping(value).items() if "file" in mapping(e)})
+        files = json.dumps({name: self.content(file) for name, file in FILES.get(block, nothing)(value)})
+        files = "" if files == "{}" else files
         return bytes(hashlib.sha256(f"{block}:{told}{files}".encode("utf-8", "surrogatepass")).digest())
 
     def content(self, file: Any) -> str:
-        """The digest of a table's file; empty where it cannot be read."""
+        """The digest of a file; empty where it cannot be read."""
         if type(file) is not str:
             return ""
         if file not in self.files:
@@ -115,6 +114,28 @@ class VariantKeys:
             except Finding:
                 self.files[file] = ""
         return self.files[file]
+
+
+def of_tables(value: Any) -> Iterator[tuple[str, Any]]:
+    """The files that tables name."""
+    return ((name, entry["file"]) for name, entry in mapping(value).items() if "file" in mapping(entry))
+
+
+def of_bodies(value: Any) -> Iterator[tuple[str, Any]]:
+    """The files that shapes name."""
+    for name, body in mapping(value).items():
+        shapes = mapping(body).get("shapes")
+        for i, shape in enumerate(shapes if type(shapes) is list else ()):
+            if "file" in mapping(shape):
+                yield f"{name}.{i}", shape["file"]
+
+
+def nothing(value: Any) -> Iterator[tuple[str, Any]]:
+    """Of a block that names no files."""
+    return iter(())
+
+
+FILES = {"tables": of_tables, "bodies": of_bodies}  # of the blocks that name files which
 
 
 def value_of(text: str) -> Any:

@@ -1,6 +1,6 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
-Parts: motion, chart, chain, process, export, loads, memory, sections, causes, reduced, balance, lagrange, pipeline,
+Parts: motion, chart, chain, process, export, loads, meshes, memory, sections, causes, reduced, balance, lagrange, pipeline,
 door, growth, variants, sweeps, pictures, reports, imports, pages, collectives; each line: what, error, time; memory:
 megabytes; growth: counts; pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
@@ -49,6 +49,7 @@ from tests.bench.lagrange import equations
 from tests.bench.load_cases import load_cases
 from tests.bench.long import long
 from tests.bench.memory import memory
+from tests.bench.meshes import meshes
 from tests.bench.pages import pages
 from tests.bench.pictures import pictures
 from tests.bench.pipeline import pipeline
@@ -217,7 +218,7 @@ PARTS = {
     "causes": by_cause, "reduced": reduced, "balance": lambda: balanced(median_ms),
     "lagrange": lambda: equations(median_ms),
     "pipeline": pipeline, "door": python_door, "growth": growth, "variants": variants, "sweeps": sweeps,
-    "collectives": collective_times, "loads": load_cases,
+    "collectives": collective_times, "loads": load_cases, "meshes": meshes,
     "pictures": pictures, "reports": lambda: reports(median_ms),
     "imports": lambda: imports(median_ms), "pages": pages,
 }  # fmt: skip

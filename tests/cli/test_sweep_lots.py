@@ -92,6 +92,7 @@ def held(tmp_path: Path) -> HeldRecipe:
     return HeldRecipe(Recipe(str(tmp_path / "none.yaml"), SWINGING, measures, Options(), {}))
 
 
+@pytest.mark.heavy
 def test_tasks_of_one_process_work_one_after_the_other(held: HeldRecipe, monkeypatch: pytest.MonkeyPatch) -> None:
     """Also those of several recipes: what heun keeps in its modules is that of one piece of work."""
     inside, most = [], []

@@ -15,6 +15,7 @@ import pytest
 from heuncli.errors import OutputError
 from heuncli.sweeps.store.store import Store
 from heuncli.variants.asking import Answer, Asker, Measured
+from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun
 from tests.shared.shell import shell
 
@@ -115,6 +116,16 @@ def test_the_content_of_tables_counts(heun: Heun, folder: Path, solved: list[dic
     (folder / "f.csv").write_text("-1,6\n1,6\n")
     assert heun(*MASSES, *STORED).returncode == one.returncode == 0
     assert len(solved) == 10
+
+
+def test_the_content_of_meshes_counts(heun: Heun, folder: Path, solved: list[dict[str, str]]) -> None:
+    extra = "  solid: {shapes: [{type: mesh, file: solid.stl, density: 1}], points: {a: [0, 0, 0]}}\njoints:\n"
+    text = HANGING.replace("expect", "#").replace("joints:\n", extra, 1)
+    (folder / "hanging.yaml").write_text(text)
+    for size, count in ((1.0, 5), (1.0, 5), (2.0, 10)):
+        (folder / "solid.stl").write_bytes(triangles.binary_stl(size * triangles.box()))
+        assert heun(*MASSES, *STORED).returncode == 0
+        assert len(solved) == count
 
 
 def test_what_cannot_be_solved_is_kept(heun: Heun, solved: list[dict[str, str]]) -> None:

@@ -50,11 +50,11 @@ Force = Counterweight | PointForce | '''),
             after("not isinstance(load, f.ActuatorEntry | f.SpringEntry", " | f.CounterweightEntry"),
         ),
         "heuncli/mechanism/build.py": (
-            Edit("        case m.Torque():\n", """        case m.Counterweight():
+            Edit("        case m.Torque() | m.Motor():\n", """        case m.Counterweight():
             a, b = f.from_, f.to
             ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
             return PairLoad(name, *ends, Expression.of(-f.pull), 0.0, 0.0, 0.0)
-        case m.Torque():
+        case m.Torque() | m.Motor():
 """),
             after("import numpy as np\n", "\nfrom heuncli.expressions.programs import Expression"),
         ),

@@ -90,6 +90,15 @@ def load_added(random: Random, tree: Tree) -> None:
             "length": random.choice((0.5, 0)),
             "damping": 1,
         },
+        {
+            "type": "bushing",
+            **pair,
+            "stiffness": [random.uniform(1, 500), 20, "3"],
+            "turning": random.choice((5, [1, 2, 3])),
+            "damping": 1,
+            "preload": random.choice(([0, 0, 0], [1, 2, 3])),
+        },
+        {"type": "spring", **pair, "force": random.choice(("-20*(length - 0.5) - rate", "5/(1 + length)"))},
         {"type": "actuator", **pair, "value": random.choice((3, "2*cos(5*t)", "-4 if t > 0.2 else 4"))},
     ]
     for name, kind in joints:
@@ -97,7 +106,10 @@ def load_added(random: Random, tree: Tree) -> None:
             loads.append({"type": "damper", "joint": name, "coefficient": random.uniform(0.01, 5)})
         if kind == "pin":
             loads.append({"type": "torque", "joint": name, "value": f"-3*{name}.angle"})
-            loads.append({"type": "friction", "joint": name, "torque": 0.2, "speed": 0.05})
+            loads.append({"type": "friction", "joint": name, "torque": random.choice((0.2, "t")), "speed": 0.05})
+            loads.append(
+                {"type": "motor", "joint": name, "curve": "3 - rate", "ratio": random.choice((1, -4)), "limit": 2}
+            )
             loads.append({"type": "turn_spring", "joint": name, "stiffness": 20, "angle": 0.3, "damping": 0.1})
         if kind == "slide":
             loads.append({"type": "torque", "joint": name, "value": f"3 - {name}.speed"})

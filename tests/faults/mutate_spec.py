@@ -41,7 +41,7 @@ KINDS = {
     "joints": ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod", "curve", "hinge",
     "fixed"),
     "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring",
-    "motor"),
+    "motor", "bushing"),
     "shapes": ("rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "ball"),
     "analysis": ("motion", "state", "impulse", "rest", "modes"),
 }  # fmt: skip

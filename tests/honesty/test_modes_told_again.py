@@ -9,7 +9,7 @@ from tests.honesty.modes_told_again import INDIFFERENT, RIGHT, WAYS, agree, answ
 from tests.shared.rest_scenes import KINDS
 from tests.shared.rest_told_again import TELLINGS
 
-EACH = 3
+EACH = 2
 ALL = (*KINDS, INDIFFERENT)
 # where nothing holds it the pose is known as the way there is, and a frequency with it
 ALONG_THE_WAY = [("friction", 14, "turned"), ("ropes", 1, "mirrored")]

@@ -9,7 +9,7 @@ from tests.honesty.rest_told_again import RIGHT, TELLINGS, agree, answer, judged
 from tests.shared.rest_scenes import KINDS
 from tests.shared.rest_told_again import resting
 
-EACH = 3
+EACH = 2
 WAYS = list(TELLINGS)
 
 

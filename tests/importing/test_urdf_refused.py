@@ -159,10 +159,6 @@ def test_what_is_wrong_is_told_with_its_line(name):
 
 
 ASKED = {  # what goes with no file, with some options
-    "mimic let go": (
-        [*TWO, link("c"), joint("j", "a", "b"), joint("k", "b", "c", MIMIC.format("j"))],
-        {"free": True}, "import-mimic",
-    ),
     "limits without room": (
         [*TWO, joint("j", "a", "b", '<limit lower="1" upper="1"/>')], {"free": True, "limits": True}, "import-limits",
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from heuncli.errors import SpecError
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from tests.shared import triangles
 from tests.shared.imported import described, imported
 from tests.shared.scenes import near
 
@@ -230,3 +233,46 @@ def test_the_spec_says_where_it_comes_from_and_begins_with_what_runs_it():
     lines = imported(robot(link("a"))).splitlines()
     assert lines[0] == "# heun run model.yaml"
     assert "# Made by heun import from model.xml, URDF, sha256" in lines
+
+
+BAR = triangles.box([0, -10, -15], [400, 10, 15])
+
+
+def meshed(name: str, scale: str = "0.001 0.001 0.001", pose: str = "") -> str:
+    """A model whose one link is a mesh."""
+    geometry = f'<collision>{pose}<geometry><mesh filename="{name}" scale="{scale}"/></geometry></collision>'
+    return robot(link("a"), link("b", geometry), joint("j", "a", "b", "revolute", '<axis xyz="0 0 1"/>'))
+
+
+@pytest.mark.parametrize(
+    "name", ["bar.stl", "package://robots/meshes/bar.stl", "package://other/bar.stl", "file://FOLDER/bar.stl"]
+)
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_density_fills_meshes(name: str, mirrored: bool, tmp_path: Path) -> None:
+    """In mm, turned and shifted; mirrored it is as heavy, on the other side."""
+    folder = tmp_path / "robots" / "urdf"
+    for place in (folder, tmp_path / "robots" / "meshes", tmp_path / "other"):
+        place.mkdir(parents=True, exist_ok=True)
+        (place / "bar.stl").write_bytes(triangles.binary_stl(BAR))
+    pose = '<origin xyz="0.1 0 0" rpy="0 0 1.5707963267948966"/>'
+    text = meshed(name.replace("FOLDER", str(folder)), f"{'-' if mirrored else ''}0.001 0.001 0.001", pose)
+    body = spec_of(imported(text, density=7850.0, file=str(folder / "model.urdf"))).bodies["b"]
+    m = 7850 * 0.4 * 0.02 * 0.03
+    along = (0.4**2 + 0.03**2) / 12, (0.02**2 + 0.03**2) / 12, (0.4**2 + 0.02**2) / 12
+    near(body.mass, m, 1.0, 1e-7)
+    near(body.center, [0.1, -0.2 if mirrored else 0.2, 0.0], 1.0, 1e-7)
+    near(body.inertia, np.diag([m * x for x in along]), 1.0, 1e-7)
+
+
+def test_meshes_that_are_no_solids_are_told(tmp_path: Path) -> None:
+    (tmp_path / "open.stl").write_bytes(triangles.binary_stl(BAR[1:]))
+    for name, told in (
+        ("open.stl", "3 edges are open"), ("none.stl", "no such file"), ("package://x/open.stl", "no such file"),
+    ):  # fmt: skip
+        with pytest.raises(SpecError, match=told) as refused:
+            imported(meshed(name), density=1.0, file=str(tmp_path / "model.urdf"))
+        assert [problem.code for problem in refused.value.problems] == ["import-shape"]
+        assert all(problem.hint and problem.location for problem in refused.value.problems)
+    (tmp_path / "bar.stl").write_bytes(triangles.binary_stl(BAR))
+    with pytest.raises(SpecError, match="scale is 0"):
+        imported(meshed("bar.stl", "1 0 1"), density=1.0, file=str(tmp_path / "model.urdf"))

@@ -15,11 +15,14 @@ from heuncli.results import Array
 from heuncli.study.solve.singular_start import rates_of
 from heuncli.tree.layout import places_of_rates
 from tests.shared.loops import loop
+from tests.shared.rolling_scenes import rolling
 from tests.shared.scenes import study
 from tests.shared.trees import tree
 
+OF_KIND = {"tree": tree, "loop": loop, "rolling": rolling}
 STEPS = 0.02 / 2.0 ** np.arange(4)  # central differences at these, extrapolated: the error is of h^8
 CASES = [("tree", seed) for seed in (0, 1, 3, 4, 5, 7, 8, 9)] + [("loop", seed) for seed in (1, 2, 3, 4, 5, 6, 7)]
+CASES += [("rolling", seed) for seed in (2, 5, 7)]
 
 
 def accelerations(runner: Runner, t: float, state: Array, holding: Array) -> Array:
@@ -45,13 +48,17 @@ def differences(runner: Runner, t: float, found: Linearised, along: Array, rates
 @pytest.mark.parametrize(("kind", "seed"), CASES)
 def test_against_differences(kind: str, seed: int) -> None:
     """Trees and loops of every kind of joint and load, in motion: along random displacements, and changes of rates."""
-    run = (tree if kind == "tree" else loop)(seed).study
+    run = OF_KIND[kind](seed).study
     runner, history = run.setup.runner, run.history.recovered
     t, holding = float(history.times[-1]), history.holding[-1]
     found = linearised(runner.layout, t, history.states[-1], holding)
     rng = np.random.default_rng(seed)
     x = rng.uniform(-1.0, 1.0, found.tangent.shape[1])
-    for along, rates in ((found.tangent @ x, found.drift @ x), (0.0 * found.tangent @ x, found.tangent @ x)):
+    ways = [(found.tangent @ x, found.drift @ x), (0.0 * found.tangent @ x, found.tangent @ x)]
+    if found.posed is not None:  # what rolls comes to more poses than its speeds lead to at once
+        y = rng.uniform(-1.0, 1.0, found.posed.tangent.shape[1])
+        ways.append((found.posed.tangent @ y, found.posed.drift @ y))
+    for along, rates in ways:
         exact = found.by_place @ along + found.by_rate @ rates
         near = differences(runner, t, found, along, rates, holding)
         # rounding of the accelerations by the least step, and what eight orders leave of steps of 0.02

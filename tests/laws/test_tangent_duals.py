@@ -21,6 +21,7 @@ from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.planar_scenes import flat_scene
+from tests.shared.rolling_scenes import rolling_scene
 from tests.shared.thin_rods import thin_rods
 from tests.shared.trees import tree_scene
 
@@ -90,6 +91,35 @@ analysis: {duration: 1, samples: 2}
 """
 
 
+# bushings and laws of what loads act between, on turning bodies and on the ground, on all their branches
+ELASTIC = """
+heun: 1
+gravity: [0.3, -9.81, 1]
+tables:
+  rubber: {x: [-9, -0.01, 0, 0.01, 9], y: [-9000, -20, 0, 20, 9000]}
+  turny: {x: [-4, -0.3, 0, 0.3, 4], y: [-400, -20, 0, 20, 400], interpolation: cubic}
+  torq: {x: [-500, 0, 100, 500], y: [30, 25, 20, -50], outside: hold}
+ground: {points: {O: [0, 0, 0], P: [0, 0, 0.5]}}
+bodies:
+  frame: {mass: 4, center: [0.1, 0.02, 0.05], inertia: [1.2, 1.5, 0.9], points: {c: [0, 0, 0], d: [0.3, 0.1, 0]},
+          position: [0.01, 0.02, 0], orientation: {axis: [1, 2, 3], angle: 0.7}, angular_velocity: [3, -2, 4]}
+  rotor: {mass: 3, center: [0.1, 0, 0], inertia: [0.2, 0.3, 0.25], points: {a: [0, 0, 0]}, position: [0.3, 0.1, 0.1]}
+  drum: {mass: 3, center: [0, 0, 0], inertia: [0.2, 0.2, 0.3], points: {a: [0, 0, 0]}}
+joints: {s: {type: pin, from: frame.d, to: drum.a, axis: [0, 0, 1], initial: {rate: 2, angle: 0.3}}}
+forces:
+  mount: {type: bushing, from: ground.O, to: frame.c, stiffness: {x: rubber, y: 300, z: 500}, preload: [10, 20, 39],
+          turning: {x: turny, y: 50, z: 80}, turning_preload: [1, 2, 3], damping: [1, 2, 3], turning_damping: [1, 2, 3]}
+  two: {type: bushing, from: frame.d, to: rotor.a, stiffness: 400, turning: [10, 50, 20], damping: [4, 1, 2],
+        turning_damping: [0.1, 0.2, 0.3], orientation: {axis: [1, 0, 0], angle: 0.5}}
+  back: {type: bushing, from: rotor.a, to: ground.P, stiffness: [40, 50, 60], turning: {y: turny}, preload: [1, 2, 3]}
+  coil: {type: spring, from: ground.P, to: drum.a, force: "table(rubber, length - 0.5) - 4*rate + s.angle"}
+  motor: {type: motor, joint: s, curve: torq, ratio: 5, limit: 22, value: "min(1 + t, 1.5)"}
+  twist: {type: turn_spring, joint: s, torque: "-2*angle**3 - 0.1*rate"}
+  oil: {type: damper, joint: s, torque: "-0.01*rate*abs(rate)"}
+  brake: {type: friction, joint: s, torque: "5*t + 1", speed: 0.1}
+"""
+
+
 def scene_of(kind: str, which: Any) -> Layout:
     """A scene, laid out."""
     if kind == "spec":
@@ -99,6 +129,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "loop": lambda: to_yaml(loop_scene(which)[0]),
         "flat": lambda: flat_scene(which),
         "thin": lambda: to_yaml(thin_rods(which)[0]),
+        "rolling": lambda: rolling_scene(which)[0],
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }
@@ -112,7 +143,8 @@ CASES = [
     *(("loop", seed) for seed in (1, 2, 5, 7, 1000, 1003, 1006, 1009)),
     *(("flat", seed) for seed in (0, 2, 6, 14)),
     *(("thin", seed) for seed in (0, 1)),
-    ("spinning", BALLS), ("text", LOADED), ("text", FOUR_BAR.replace("SPACE", "spatial")),
+    *(("rolling", seed) for seed in (3, 4, 5)),
+    ("spinning", BALLS), ("text", LOADED), ("text", ELASTIC), ("text", FOUR_BAR.replace("SPACE", "spatial")),
     ("text", FOUR_BAR.replace("SPACE", "planar")),
 ]  # fmt: skip
 

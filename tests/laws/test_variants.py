@@ -110,10 +110,9 @@ def shortened(path: Path) -> dict[str, str]:
 
 
 def values_of(spec: Spec) -> Iterator[dict[str, str]]:
-    """Of each parameter a slightly larger value, and by turns zero and its negative."""
+    """Of each parameter by turns a slightly larger value, zero and its negative."""
     for k, (name, value) in enumerate(spec.parameters.items()):
-        yield {name: repr(1.01 * value + 1e-3 * (value == 0.0))}
-        yield {name: repr((0.0, -value)[k % 2])}
+        yield {name: repr((1.01 * value + 1e-3 * (value == 0.0), 0.0, -value)[k % 3])}
 
 
 @pytest.mark.heavy

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from tests.oracle.read import GROUND, End, Joint, Model, State, at_time, end, placed, start_state, vector_at
 from tests.oracle.rows import coordinates, directions
-from tests.oracle.turns import Array, cross, unit
+from tests.oracle.turns import Array, attitude, cross, unit
 
 Spec = Mapping[str, Any]
 
@@ -170,6 +171,53 @@ def turn_spring(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
     return in_joint(joint, state, np.zeros(3), value * axis)
 
 
+def bushing(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:
+    """Force and couple on `to` at its point, the opposite on `from` at the same place."""
+    a, b = end(scene.scene, spec["from"]), end(scene.scene, spec["to"])
+    B, (F, M) = placed(state, b.body), elastic(scene, state, spec)
+    place, T = B.point(b.point), elastic_axes(scene, state, spec)[0]
+    return [Push(b.body, place, T @ F, T @ M), Push(a.body, place, -T @ F, -T @ M)]
+
+
+def elastic_axes(scene: Model, state: State, spec: Spec) -> tuple[Array, Array]:
+    """The bushing's axes in `from` and in `to`, world."""
+    a, b = end(scene.scene, spec["from"]), end(scene.scene, spec["to"])
+    own = attitude(spec.get("orientation"))
+    to = attitude(spec["to_orientation"]) if "to_orientation" in spec else own
+    return placed(state, a.body).rotation @ own, placed(state, b.body).rotation @ to
+
+
+def strain(scene: Model, state: State, spec: Spec) -> tuple[Array, Array]:
+    """Shift and rotation vector of `to` in the bushing's axes; the latter by SciPy."""
+    a, b = end(scene.scene, spec["from"]), end(scene.scene, spec["to"])
+    T, U = elastic_axes(scene, state, spec)
+    gap = placed(state, b.body).point(b.point) - placed(state, a.body).point(a.point)
+    return T.T @ gap, Rotation.from_matrix(T.T @ U).as_rotvec()
+
+
+def elastic(scene: Model, state: State, spec: Spec) -> tuple[Array, Array]:
+    """Force and moment on `to` in the bushing's axes: by the derivative of the exponential map, solved for."""
+    a, b = end(scene.scene, spec["from"]), end(scene.scene, spec["to"])
+    A, B = placed(state, a.body), placed(state, b.body)
+    T = elastic_axes(scene, state, spec)[0]
+    d, phi = strain(scene, state, spec)
+    place = B.point(b.point)
+    slip = T.T @ (B.speed(b.point) - A.velocity - cross(A.angular_velocity, place - A.position))
+    spin = T.T @ (B.angular_velocity - A.angular_velocity)
+    three = {key: np.broadcast_to(spec.get(key, 0.0), 3) for key in ELASTIC}
+    F = three["preload"] - three["stiffness"] * d - three["damping"] * slip
+    angle = float(np.linalg.norm(phi))
+    K = np.array([[0.0, -phi[2], phi[1]], [phi[2], 0.0, -phi[0]], [-phi[1], phi[0], 0.0]])
+    J = np.eye(3)
+    if angle > 0.0:
+        J = J + (1.0 - np.cos(angle)) / angle**2 * K + (angle - np.sin(angle)) / angle**3 * K @ K
+    M = np.linalg.solve(J.T, three["turning_preload"] - three["turning"] * phi)
+    return F, M - three["turning_damping"] * spin
+
+
+ELASTIC = ("stiffness", "damping", "preload", "turning", "turning_damping", "turning_preload")
+
+
 def turned_by(joint: Joint, state: State) -> float:
     """The angle about the axis; of a universal that of its second axis."""
     if joint.kind != "universal":
@@ -190,6 +238,7 @@ KINDS_OF_LOAD: dict[str, Callable[[Model, State, float, Spec], list[Push]]] = {
     "friction": friction,
     "distributed": distributed,
     "turn_spring": turn_spring,
+    "bushing": bushing,
 }
 
 

@@ -17,8 +17,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.oracle import gears
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.turns import Array, across, cross, turn_vector
+from tests.oracle.wheels import lines
 
 Directions = list[tuple[Array, Array]]  # world vectors and their rates
 
@@ -98,11 +100,12 @@ class Rows(NamedTuple):
 
 
 def assemble(scene: Model, state: State, t: float) -> Rows:
-    """The rows of all joints of a scene."""
+    """The rows of all joints of a scene, and of its wheels."""
     place = {name: 6 * k for k, name in enumerate(scene.names)}
     rows: list[Row] = []
     J: list[Array] = []
     gamma: list[float] = []
+    zero = np.zeros(3)
     for joint in scene.joints:
         A, B = placed(state, joint.a.body), placed(state, joint.b.body)
         center = {
@@ -125,6 +128,10 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
             rows.append(row)
             J.append(line)
             gamma.append(float(row.force @ bias + row.force_rate @ slip + row.moment_rate @ turning))
+    for name, e, line, bias_of in (*lines(scene, state), *gears.lines(scene, state)):
+        rows.append(Row(name, False, e, zero, zero, zero, 0.0, 0.0))
+        J.append(line)
+        gamma.append(bias_of)
     shape = (len(rows), 6 * len(scene.names))
     return Rows(
         np.array(J).reshape(shape),

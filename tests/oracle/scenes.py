@@ -20,6 +20,7 @@ from tests.oracle.values import Harmonic
 ALL_KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
 LOADS = ("force", "couple", "spring", "actuator", "torque", "damper", "friction")
 SPREAD = ("force", "distributed", "turn_spring", "spring")
+ELASTIC = ("force", "bushing", "spring")
 DRIVEN = {"pin": "angle", "slide": "travel", "cylinder": "travel", "rod": "length"}
 
 
@@ -302,6 +303,17 @@ class Maker:
             return None
         stiffness, angle, damping = (float(self.rng.uniform(*ends)) for ends in ((1, 10), (-2, 2), (0, 1)))
         return {"joint": joint, "stiffness": stiffness, "angle": angle, "damping": damping}
+
+    def load_bushing(self, in_time: bool) -> dict[str, Any]:
+        a, b = self.pair()
+        spec: dict[str, Any] = {"from": a, "to": b, "orientation": {"matrix": random_rotation(self.rng).tolist()}}
+        for key, most in (("stiffness", 10), ("turning", 5), ("damping", 1), ("turning_damping", 1)):
+            spec[key] = self.rng.uniform(0, most, 3).tolist()
+        for key in ("preload", "turning_preload"):
+            spec[key] = self.rng.uniform(-2, 2, 3).tolist()
+        if self.rng.random() < 0.5:
+            spec["to_orientation"] = {"matrix": random_rotation(self.rng).tolist()}
+        return spec
 
     def load_friction(self, in_time: bool) -> dict[str, Any] | None:
         joint = self.on_joint(("pin", "slide"))

@@ -155,6 +155,14 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
             "damper": {"coefficient": mass / time if sliding else moment * time, "sliding": mass / time},
             "distributed": {"vector": force / length, "to_vector": force / length},
             "turn_spring": {"stiffness": moment, "damping": moment * time},
+            "bushing": {
+                "stiffness": mass / time**2,
+                "damping": mass / time,
+                "preload": force,
+                "turning": moment,
+                "turning_damping": moment * time,
+                "turning_preload": moment,
+            },
             "friction": {"torque": moment, "force": force, "speed": speed, "radius": length, "length": length},
         }[spec["type"]]
         for key, factor in factors.items():

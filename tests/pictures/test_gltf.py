@@ -115,6 +115,8 @@ def volume(shape: Shape) -> float:
         return float(np.prod(shape.size))
     if shape.type == "sphere":
         return ball(shape.radius or 0.0)
+    if shape.mesh is not None and shape.scale is not None:
+        return shape.mesh.volume * shape.scale**3
     length = math.dist(shape.from_ or (), shape.to or ())
     if shape.type == "rod":
         return math.pi * OF_CIRCLE * length * (THIN * length) ** 2

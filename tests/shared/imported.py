@@ -11,11 +11,11 @@ from heuncli.conversion.spec_text import spec_text
 from heuncli.conversion.xml_elements import read_elements
 
 
-def described(text: str | bytes, **asked: Any) -> DescribedMachine:
-    """The machine of a model."""
+def described(text: str | bytes, file: str = "model.xml", **asked: Any) -> DescribedMachine:
+    """The machine of a model; file: where it stands, and what it names."""
     content = text.encode() if isinstance(text, str) else text
-    root = read_elements(content, "model.xml")
-    return reader_of(root, "model.xml").described(content, "model.xml", root, ImportAsked(**asked), "0" * 64)
+    root = read_elements(content, file)
+    return reader_of(root, file).described(content, file, root, ImportAsked(**asked), "0" * 64)
 
 
 def imported(text: str | bytes, **asked: Any) -> str:

@@ -216,6 +216,10 @@ SLIDING: dict[str, dict[str, Powers]] = {
     "spring": {"stiffness": PER_LENGTH, "damping": THRUST_DAMPING, "length": LENGTH},
     "damper": {"coefficient": THRUST_DAMPING}, "friction": {"force": FORCE, "speed": SPEED, "length": LENGTH},
     "distributed": {"vector": PER_LENGTH, "to_vector": PER_LENGTH, "from": LENGTH, "to": LENGTH},
+    "bushing": {
+        "stiffness": PER_LENGTH, "damping": THRUST_DAMPING, "preload": FORCE, "turning": MOMENT,
+        "turning_damping": TORQUE_DAMPING, "turning_preload": MOMENT,
+    },
 }  # fmt: skip
 TURNING: dict[str, dict[str, Powers]] = SLIDING | {
     "torque": {"value": MOMENT}, "turn_spring": {"stiffness": MOMENT, "damping": TORQUE_DAMPING},

@@ -14,6 +14,7 @@ from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import axis_of
 from heuncli.variants.files import with_files, with_more_files
 from heuncli.variants.plans import Plan, plan_of
+from tests.shared import triangles
 
 DRIVEN = """\
 heun: 1
@@ -96,3 +97,41 @@ def test_a_file_that_was_not_sent_is_asked_for_and_not_looked_for_on_a_disk(besi
     assert missing.value.name == "b.csv"
     more = with_more_files(sent, ["b.csv"])
     assert Asker(more).answer(whole) == Asker(recipe).answer(whole)
+
+
+SOLID = """\
+heun: 1
+title: A solid on a clamp
+parameters: {unit: 1 mm, rho: 7850, turn: 0}
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  solid:
+    shapes: [{type: mesh, file: a.stl, scale: unit, density: rho, orientation: {axis: [0, 0, 1], angle: turn}}]
+    points: {a: [0, 0, 0]}
+joints:
+  clamp: {type: weld, from: ground.O, to: solid.a}
+sections:
+  root: {body: solid, at: [0, 0, 0.01], normal: [0, 0, 1]}
+"""
+PULLS = ("joints.clamp.force.z", "joints.clamp.moment.y", "sections.root.N")
+SOLIDS = ("bodies.solid.shapes.0.file=a.stl,b.stl,open.stl,none.stl", "turn=0,1")
+
+
+def test_variants_of_meshes_answer_as_each_alone_here_and_elsewhere(tmp_path: Path) -> None:
+    box = triangles.box([10, -5, 0], [40, 15, 60])
+    for name, surface in {"a": box, "b": triangles.torus(9, 7, 30.0, 20.0), "open": box[1:]}.items():
+        (tmp_path / f"{name}.stl").write_bytes(triangles.binary_stl(surface))
+    (tmp_path / "solid.yaml").write_text(SOLID)
+    recipe = Recipe(str(tmp_path / "solid.yaml"), SOLID, tuple(measure.parse_all(PULLS)), Options(), {})
+    axes = plan(*SOLIDS)
+    here = Asker(recipe)
+    variants = [axes.values(number) for number in axes.numbers()]
+    asked = [here.answer(values) for values in variants]
+    assert asked == [Asker(recipe).answer(values) for values in variants]
+    assert {answer.code for answer in asked} == {"", "open-mesh", "mesh-file"}
+    assert len({repr(answer) for answer in asked if not answer.code}) == 4
+    sent = pickle.dumps(with_files(recipe, axes))
+    for file in tmp_path.glob("*.stl"):
+        file.unlink()
+    assert [Asker(pickle.loads(sent)).answer(values) for values in variants] == asked

@@ -15,6 +15,7 @@ from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.workflow import solve
+from heuncli.tree.held_speeds import holds_speed
 
 
 @record
@@ -58,6 +59,7 @@ def instant_of(spec: Spec, at: float | None, time_limit: float | None) -> Instan
         runner, layout = setup.runner, setup.scene.layout
         there = runner.recovered(np.array([t]), layout.y0[None, :])
         words = "at the rest pose" if kind == "rest" else f"at t = {t:.6g} s"
+    require_poses(setup)
     scene = freed(setup.scene)
     state, holding = scene.states(there)[0], scene.holding(there.holding[0])
     here = scene.runner.recovered(np.array([t]), state[None, :], holding=holding)
@@ -72,6 +74,16 @@ def instant_of(spec: Spec, at: float | None, time_limit: float | None) -> Instan
         here,
         linearised(scene.layout, t, here.states[0], holding),
     )
+
+
+def require_poses(setup: Setup) -> None:
+    """Raise SolveError [no-coordinate] where wheels hold speeds in space: no coordinates have these for their rates."""
+    layout = setup.scene.layout
+    if layout.mechanism.planar or not holds_speed(layout).any():
+        return
+    message = "what rolls has more poses than speeds: no coordinates have its speeds as their rates"
+    hint = "heun run tells its motion and loads, heun modes its small motions; in the plane wheels roll along lines"
+    raise SolveError(Problem("no-coordinate", message, hint=hint))
 
 
 def moved_to(spec: Spec, at: float, time_limit: float | None) -> tuple[Setup, Recovered]:

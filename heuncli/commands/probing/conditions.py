@@ -42,7 +42,7 @@ def lightest(own: Coordinates, found: ConditionNumbers, k: int) -> str:
 def singular_events(along: SearchedMotion) -> list[Event]:
     """Singular poses that the motion passes or begins in, and bodies without inertia about an axis."""
     study = along.study
-    loops = f"joints.{study.setup.scene.mechanism.joints[along.layout.rows[0]].name}" if along.layout.rows else ""
+    loops = study.setup.scene.mechanism.owner(along.layout.rows[0]) if along.layout.rows else ""
     through = "closed chains are stretched, folded or flat: they lose rank, and may go on in more than one way"
     events = [Event(t, SINGULAR, loops, through) for t in study.history.singular]
     events += [

@@ -47,8 +47,8 @@ def _judged(path: str) -> tuple[Spec, list[str]]:
 
 
 def _of_cuts(spec: Spec) -> list[str]:
-    """Warnings of the sections. Raises SpecError with every one that cannot be cut."""
-    if not spec.sections:
+    """Warnings of the sections. Raises SpecError with every one that cannot be cut, and couplings that do not fit."""
+    if not (spec.sections or spec.couplings):
         return []
     from heuncli.study.model.setup import draw  # with NumPy, which other specs are judged without
 

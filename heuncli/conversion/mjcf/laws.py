@@ -34,6 +34,7 @@ class JointLaws(NamedTuple):
     initial: dict[str, dict[str, str]]
     driven: frozenset[int]
     told: tuple[str, ...]
+    couplings: tuple[DescribedEntry, ...]
     left_out: tuple[Problem, ...]
 
 
@@ -49,6 +50,7 @@ class _Making:
         self.drives: list[DescribedEntry] = []
         self.initial: dict[str, dict[str, str]] = {}
         self.laws: dict[int, str] = {}
+        self.couplings: dict[int, DescribedEntry] = {}  # by the joint that follows
         self.driven: set[int] = set()
         self.left_out: list[Problem] = []
 
@@ -80,11 +82,8 @@ class _Making:
         """A joint that follows another, by the law of that one."""
         c, step = self.c, self.steps[coupling.slave]
         if self.asked.free:
-            message = f"joint {step.name} follows another, which free joints do not"
-            place = c.location("equality", coupling.equality)
-            raise SpecError(
-                Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
-            )
+            self.couple(coupling)
+            return
         argument = None if coupling in self.idle else self.argument(coupling)
         if argument is None or coupling.slave in self.driven:
             none = "a joint that nothing else holds"
@@ -99,6 +98,22 @@ class _Making:
             else f"; of a motion its law is {self.steps[coupling.master].name}'s, by this rule"
         )
         self.drive(coupling.slave, law, f"{c.told('equality', coupling.equality)}{leads}")
+
+    def couple(self, coupling: JointEquality) -> None:
+        """A free joint that follows another in a fixed ratio. Raises SpecError for any other polynomial."""
+        c, step = self.c, self.steps[coupling.slave]
+        start, slope, *more = (*coupling.polynomial, 0.0, 0.0)
+        if coupling.master is None or slope == 0.0 or any(more) or coupling.slave in self.couplings:
+            message = f"joint {step.name} follows another by more than a ratio, which free joints do not"
+            place = c.location("equality", coupling.equality)
+            raise SpecError(
+                Problem("import-mimic", message, place, "leave --free out: drives hold them in their ratio")
+            )
+        # of MuJoCo's coordinates, each less that of the drawing, which the spec's are counted from
+        leader = self.steps[coupling.master].name
+        keys = {"type": "ratio", "of": (step.name, leader), "factors": (1.0, -slope), "is": start}
+        told = c.told("equality", coupling.equality)
+        self.couplings[coupling.slave] = DescribedEntry(f"follow_{step.name}", keys, told)
 
     def drive(self, joint: int, law: str, remark: str = "") -> None:
         step = self.steps[joint]
@@ -150,6 +165,7 @@ def laws_of(
         making.initial,
         frozenset(making.driven),
         making.told(),
+        tuple(making.couplings.values()),
         tuple(making.left_out),
     )
 

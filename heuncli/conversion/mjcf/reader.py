@@ -62,7 +62,7 @@ class _Said:
         self.held = held(c, self.tree, self.closings, self.q)
         self.laws: JointLaws = laws_of(c, self.tree, self.held, self.closings.couplings, self.q, self.qd, asked)
         self.names = joint_names  # a stop shares its name with no joint, force or drive
-        self.names.given |= {drive.name for drive in self.laws.drives}
+        self.names.given |= {entry.name for entry in (*self.laws.drives, *self.laws.couplings)}
 
     def machine(self, sha256: str) -> DescribedMachine:
         """The machine."""
@@ -91,6 +91,7 @@ class _Said:
             parameters=self.laws.parameters,
             joints=tuple(self.with_initial(joint) for joint in (*self.joints, *self.closings.joints)),
             drives=self.laws.drives,
+            couplings=self.laws.couplings,
             forces=forces,
             stops=limits,
             told=tuple(self.told()),

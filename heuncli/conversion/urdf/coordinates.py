@@ -1,6 +1,7 @@
 """The coordinates of a robot's joints: parameters that hold them by drives, or at which they start where they are free.
 
-A joint that follows another (mimic) is driven by the parameter of that one: position = multiplier * parameter + offset.
+A joint that follows another (mimic) is driven by the parameter of that one: position = multiplier * parameter + offset;
+where joints are free a coupling holds it there.
 """
 
 from __future__ import annotations
@@ -57,6 +58,7 @@ class RobotCoordinates:
         self.drives: list[DescribedEntry] = []
         self.dampers: list[DescribedEntry] = []
         self.stops: list[DescribedEntry] = []
+        self.couplings: list[DescribedEntry] = []
         self.initial: dict[str, dict[str, Any]] = {}
         self.left_out: list[Problem] = []
         pairs = [(one, one.joint, name) for one, name in zip(linked, names, strict=True)]
@@ -101,13 +103,17 @@ class RobotCoordinates:
 
     def _follow(self, joint: UrdfJoint, name: str, quantity: JointQuantity, follows: Followed) -> None:
         leader = self.names[follows.leader.name]
-        if self.asked.free:
-            message = f"it follows {follows.leader.name}, which free joints do not"
-            hint = "leave --free out: drives hold them in their ratio"
-            element = joint.mimic.element if joint.mimic is not None else joint.element
-            self.fields.report("import-mimic", element, joint.path, message, hint)
-            return
         alike = QUANTITIES[self.types[follows.leader.name]] == quantity
+        if self.asked.free:
+            if follows.multiplier == 0.0:
+                self._drive(name, quantity, pointed(follows.offset), f"mimic: stands, whatever {leader} does")
+                return
+            keys = {
+                "type": "ratio", "of": (name, leader), "factors": (1.0, -follows.multiplier), "is": follows.offset,
+            }  # fmt: skip
+            self.couplings.append(DescribedEntry(self.namer.name(f"follow_{name}"), keys, f"mimic: follows {leader}"))
+            self.initial[name] = {quantity.key: ratio(leader, follows.multiplier, follows.offset, alike)}
+            return
         remark = f"mimic: follows {leader} by this rule; of a motion the law of hold_{leader} stands here, too"
         self._drive(name, quantity, ratio(leader, follows.multiplier, follows.offset, alike), remark)
 

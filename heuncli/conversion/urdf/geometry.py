@@ -31,6 +31,11 @@ def shapes_of(link: UrdfLink, R: Matrix, density: float, fields: UrdfFields) -> 
     return source, tuple(shape for shape in shapes if shape is not None)
 
 
+def has_plain(link: UrdfLink) -> bool:
+    """Whether the elements of the one or the other kind are all of forms that heun has."""
+    return any(found and all(map(_plain, found)) for found in map(link.element.all, SOURCES))
+
+
 def _plain(element: XmlElement) -> bool:
     """Whether it is of a form that heun has."""
     return _form(element) is not None
@@ -47,7 +52,7 @@ def _shape(element: XmlElement, R: Matrix, density: float, link: UrdfLink, field
         parts = [part.tag for geometry in element.all("geometry") for part in geometry.inner]
         what = f"a {parts[0]}" if parts else "nothing"
         message = f"it has no <inertial>, and its {element.tag} is {what}: no shape that --density can fill"
-        hint = "give it an <inertial>; boxes, cylinders and spheres are filled"
+        hint = "give it an <inertial>; boxes, cylinders and spheres are filled, and meshes where all of it are"
         fields.report("import-shape", element, link.path, message, hint)
         return None
     sizes = _sizes(form, link, fields)

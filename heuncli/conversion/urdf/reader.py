@@ -7,7 +7,7 @@ from heuncli.conversion.described import DescribedEntry, DescribedMachine
 from heuncli.conversion.urdf.carriers import attitudes_of, heads_of, placed_links
 from heuncli.conversion.urdf.document import Robot, robot_of
 from heuncli.conversion.urdf.fields import UrdfFields
-from heuncli.conversion.urdf.geometry import shapes_of
+from heuncli.conversion.urdf.geometry import has_plain, shapes_of
 from heuncli.conversion.urdf.masses import LinkMass, mass_of, without_mass
 from heuncli.conversion.urdf.said import JudgedRobot, said
 from heuncli.conversion.urdf.tree import LinkTree, tree_of
@@ -16,7 +16,9 @@ from heuncli.errors import SpecError
 from heuncli.spec.models import Matrix
 
 WORLD = "world"  # the name of a root that is the ground
-MASSES_HINT = "give it an <inertial>; --density fills boxes, cylinders and spheres; --repair massless gives it 1 mg"
+MASSES_HINT = (
+    "give it an <inertial>; --density fills boxes, cylinders, spheres, meshes; --repair massless gives it 1 mg"
+)
 
 
 def described(_content: bytes, file: str, root: XmlElement, asked: ImportAsked, sha256: str) -> DescribedMachine:
@@ -37,13 +39,15 @@ def _judged(
 ) -> JudgedRobot | None:
     """The robot with all that is found out of it; None, and problems, where it is no machine."""
     attitudes = attitudes_of(tree)
-    shapes = _shapes(tree, attitudes, masses, asked, fields)
+    meshes = _meshes(tree, masses, asked, fields)
+    shapes = _shapes(tree, attitudes, {*masses, *meshes}, asked, fields)
+    masses = masses | {name: mass for name, mass in meshes.items() if mass is not None}
     grounded = not asked.base_free
     if asked.base_free and tree.root.name == WORLD:
         message = "the root is the world itself, which --base free would let go"
         hint = "leave --base out; a joint of type floating lets a link go"
         fields.report("import-tree", tree.root.element, tree.root.path, message, hint)
-    placed, lost = placed_links(tree, attitudes, {*masses, *shapes}, grounded)
+    placed, lost = placed_links(tree, attitudes, {*masses, *shapes, *meshes}, grounded)
     heads = heads_of(tree)
     unborne = list(dict.fromkeys(heads[name] for name in lost))
     if unborne and "massless" in asked.repair:
@@ -67,8 +71,25 @@ def _report_lost(unborne: list[str], robot: Robot, tree: LinkTree, fields: UrdfF
         fields.report("import-massless", link.element, link.path, message, MASSES_HINT)
 
 
+def _meshes(
+    tree: LinkTree, masses: dict[str, LinkMass], asked: ImportAsked, fields: UrdfFields
+) -> dict[str, LinkMass | None]:
+    """Masses of links without one whose elements are meshes, where a density was given; None of those in error."""
+    if asked.density is None:
+        return {}
+    bare = [link for link in tree.links if link.name not in masses and not has_plain(link)]
+    found: dict[str, LinkMass | None] = {}
+    for link in bare:
+        from heuncli.conversion.urdf.meshes import mass_of_meshes, source_of_meshes  # with NumPy, which few models need
+
+        source = source_of_meshes(link)
+        if source is not None:
+            found[link.name] = mass_of_meshes(link, source, asked.density, fields)
+    return found
+
+
 def _shapes(
-    tree: LinkTree, attitudes: dict[str, Matrix], masses: dict[str, LinkMass], asked: ImportAsked, fields: UrdfFields
+    tree: LinkTree, attitudes: dict[str, Matrix], known: set[str], asked: ImportAsked, fields: UrdfFields
 ) -> dict[str, tuple[str, tuple[DescribedEntry, ...]]]:
     """Shapes of links without mass, where a density was given; and of which elements they are."""
     if asked.density is None:
@@ -76,6 +97,6 @@ def _shapes(
     found = {
         link.name: shapes_of(link, attitudes[link.name], asked.density, fields)
         for link in tree.links
-        if link.name not in masses
+        if link.name not in known
     }
     return {name: shapes for name, shapes in found.items() if shapes[1]}

@@ -68,6 +68,7 @@ def said(judged: JudgedRobot, asked: ImportAsked, fields: UrdfFields, sha256: st
         drives=tuple(coordinates.drives),
         forces=tuple(coordinates.dampers),
         stops=tuple(coordinates.stops),
+        couplings=tuple(coordinates.couplings),
         told=(*_told(judged, fields), *coordinates.told),
         remarks={"gravity": "URDF has none; z is up", "parameters": "where the joints stand"},
         left_out=(*fields.left_out, *coordinates.left_out, *_undamped(judged, fields)),

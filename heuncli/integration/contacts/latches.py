@@ -148,7 +148,7 @@ class Latches:
 def motion_along(layout: Layout, at: Recovered, contact: Contact, last: float) -> tuple[float, float]:
     """The rate of the coordinate that a latch holds, and what rounding makes of it in a run up to `last`."""
     bodies = at.bodies[0]
-    load = unit_load(layout, bodies, at.rows[0], contact, way=1.0)
+    load = unit_load(layout, at, contact, way=1.0)
     rate = float(np.sum(load[:, :3] * bodies["omega"]) + np.sum(load[:, 3:] * bodies["v"]))
     sizes = np.linalg.norm(load[:, :3], axis=1) @ np.linalg.norm(bodies["omega"], axis=1)
     sizes += np.linalg.norm(load[:, 3:], axis=1) @ np.linalg.norm(bodies["v"], axis=1)

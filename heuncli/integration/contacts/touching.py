@@ -8,6 +8,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
+from heuncli.kernel.choose import scene as kernel
 from heuncli.records import fields, record
 from heuncli.results import Array, Indices, Mask
 from heuncli.shapes.rotations import cross_rows
@@ -53,9 +54,8 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
         if closed[i] or contact.row == event or gap <= near:
             found.append(i)
     own = [layout.contacts[i] for i in found]
-    loads = np.array([unit_load(layout, bodies, rows, contact, -contact.sense) for contact in own]).reshape(
-        len(own), len(bodies), 6
-    )
+    loads = np.array([unit_load(layout, at, contact, -contact.sense) for contact in own])
+    loads = loads.reshape(len(own), len(bodies), 6)
     motion = np.concatenate([bodies["omega"], bodies["v"]], axis=1)
     terms = np.array([terms_of_gap(layout, bodies, contact) for contact in own])
     reaches = tolerances.KERNEL["touching"] * terms
@@ -75,27 +75,42 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
 def terms_of_gap(layout: Layout, bodies: Table, contact: Contact) -> float:
     """The size of what a contact's gap is the sum of [m or rad]."""
     row = layout.tables["closures"][contact.row]
-    Q = point(layout, bodies, contact)
-    return (layout.size + math.sqrt(float(Q @ Q))) / float(row["weight"]) + abs(float(row["length"]))
+    places = [point(bodies, part) for part in conditions(layout, contact.row) if part["kind"] not in LYING]
+    far = sum(layout.size + math.sqrt(float(Q @ Q)) for Q in places)
+    return far / float(row["weight"]) + abs(float(row["length"]))
 
 
-def point(layout: Layout, bodies: Table, contact: Contact) -> Array:
-    """World place of the `to` point, where a contact's force acts on both bodies."""
-    row = layout.tables["closures"][contact.row]
+LYING = (kernel.ARC, kernel.WOUND)  # what of a rope lies on its sheaves, which loads nothing
+
+
+def conditions(layout: Layout, row: int) -> Table:
+    """The conditions of two bodies that a closure row is the sum of; its own, where it is none."""
+    own = layout.tables["closures"][row]
+    if own["kind"] != kernel.SUM:
+        return layout.tables["closures"][row : row + 1]
+    return layout.tables["parts"][own["part"] : own["part"] + own["part_count"]]
+
+
+def point(bodies: Table, row: Table) -> Array:
+    """World place of the `to` point of a condition of two bodies."""
     q: Array = np.array(row["q"].tolist())
     return q if row["b"] < 0 else bodies["r"][row["b"]] + bodies["R"][row["b"]] @ q
 
 
-def unit_load(layout: Layout, bodies: Table, rows: Table, contact: Contact, way: float) -> Array:
+def unit_load(layout: Layout, at: Recovered, contact: Contact, way: float) -> Array:
     """What a contact whose multiplier is `way` puts on the bodies, (n_b, 6)."""
-    row = layout.tables["closures"][contact.row]
-    Q = point(layout, bodies, contact)
-    f, m = (way * rows[of][contact.row] for of in ("f", "m"))
+    bodies, own = at.bodies[0], layout.tables["closures"][contact.row]
     load = np.zeros((len(bodies), 6))
-    for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
-        if body >= 0:
-            load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
-            load[body, 3:] += sign * f
+    for k, row in enumerate(conditions(layout, contact.row), int(own["part"])):
+        if own["kind"] == kernel.SUM:
+            Q, f, m = (at.parts[of][0, k] for of in ("Q", "f", "m"))
+        else:
+            Q, f, m = point(bodies, row), at.rows["f"][0, contact.row], at.rows["m"][0, contact.row]
+        f, m = way * f, way * m
+        for body, sign in ((int(row["b"]), 1.0), (int(row["a"]), -1.0)):
+            if body >= 0:
+                load[body, :3] += sign * (m + cross_rows(Q - bodies["r"][body], f))
+                load[body, 3:] += sign * f
     return load
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
+
+import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem
-from heuncli.expressions.programs import KNOT, TABLE, Expression, TableFunction, outside
+from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import Bushing, Load, Mechanism, PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
@@ -36,7 +39,23 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
     for name, point in layout.mechanism.points.items():
         jets = motion_of(layout, point, recovered.bodies[instant : instant + 1])[0]
         coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
+    for load, rows in layout.mechanism.load_rows():
+        coordinates |= acted_between(load, recovered.loads[instant, rows])
     return coordinates
+
+
+def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
+    """What a load acts between, as its own law may name it; of rates of rates nothing is known."""
+    name = f"{LOADS}.{load.name}"
+    if isinstance(load, PairLoad):
+        length, rate = float(rows["span"][0]), float(rows["rate"][0])
+        return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
+    if not isinstance(load, Bushing):
+        return {}
+    parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
+    return {
+        (name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)
+    }
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:
@@ -45,6 +64,8 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     length: of the run; coordinates: at t, by joint and quantity.
     """
     scale = max(abs(t), length)
+    if problems := paths_left(mechanism, t, scale * 2.0**-FARTHEST, coordinates):
+        return problems
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
             _problem(expression, t + beyond, _values(expression, beyond, coordinates), not_finite)
@@ -61,6 +82,21 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates)))
         > 0.0
     ]
+
+
+def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
+    """The joints whose points are at the end of their paths at t, or by their rates just beyond it."""
+    problems = []
+    for joint in mechanism.joints:
+        path = joint.path
+        s, u = coordinates.get((joint.name, "travel"), (math.nan, 0.0))
+        if path is None or path.period or path.first <= s + beyond * u <= path.last:
+            continue
+        message = f"at t = {t:.9g} s the point of joint {joint.name} runs off its path, which covers travel from "
+        message += f"{path.first:.9g} to {path.last:.9g} m"
+        hint = "a longer path, or end the run before: until: " + f"{joint.name}.travel > {path.last:.6g}"
+        problems.append(Problem("path-ends", message, None, hint, f"joints.{joint.name}"))
+    return problems
 
 
 def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:

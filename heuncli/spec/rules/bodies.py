@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes, tensor
@@ -20,7 +21,8 @@ LEAST = {
     "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
     "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
     "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
-    "scale": "the length of one unit of the file: 1 mm", "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+    "scale": "the length of one unit of the file: 1 mm",
+    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
 }  # fmt: skip
 TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
 
@@ -104,6 +106,8 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
         if section.properties is not None:
             yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+    for name, wheel in draft.document.rolling.items():
+        yield from positive(("rolling", name), wheel, "radius")
     yield from positive(("analysis",), draft.document.analysis, "duration", "step")
 
 
@@ -139,7 +143,7 @@ def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
         keys += ["torque", "force"]
     for key in keys:
         value = getattr(load, key, None)
-        if isinstance(value, f.ShiftLaws | f.TurnLaws):
+        if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
             value = (value.x, value.y, value.z)
         for part in value if isinstance(value, tuple) else (value,):
             yield key, getattr(part, "constant", part)
@@ -269,6 +273,10 @@ def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]
         for i, shape in enumerate(body.shapes or []):
             if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
                 yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
+    for name, load in draft.document.forces.items():
+        for key in ("orientation", "to_orientation") if isinstance(load, fe.BushingEntry) else ():
+            if getattr(load, key) is not None:
+                yield ("forces", name, key), getattr(load, key)
 
 
 @rule("piece-form")

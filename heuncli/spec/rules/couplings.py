@@ -7,6 +7,8 @@ from collections.abc import Iterator
 
 from heuncli.joint_kinds import TYPES, named
 from heuncli.nearest import did_you_mean
+from heuncli.spec import format_couplings as f
+from heuncli.spec.format import FrictionEntry
 from heuncli.spec.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
@@ -18,7 +20,8 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        for i, word in enumerate(coupling.of):
+        of = [] if isinstance(coupling, f.RopeEntry | f.ConstantVelocityEntry) else coupling.of
+        for i, word in enumerate(of):
             path = ("couplings", name, "of", i)
             joint, _, quantity = word.partition(".")
             if joint not in joints:
@@ -30,7 +33,7 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
             elif kind is not None and quantity and quantity not in kind.coordinates:
                 yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
-            if word in coupling.of[:i]:
+            if word in of[:i]:
                 yield Violation(path, f"{word} is coupled to itself", "name another joint")
 
 
@@ -41,7 +44,7 @@ def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
         counts = COUNTS.get(coupling.type)
         if counts is not None and len(coupling.of) not in counts:
             some = " or ".join(map(str, counts))
-            message = f"{len(coupling.of)} joints are named"
+            message = f"{', '.join(coupling.of) or 'nothing'} is named"
             yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
 
 
@@ -58,7 +61,9 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
             hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
-            yield Violation((*path, "teeth"), f"teeth {gear.teeth} are no pair of gears", hint)
+            yield Violation(
+                (*path, "teeth"), f"teeth {', '.join(f'{z:g}' for z in gear.teeth)} are no pair of gears", hint
+            )
         if gear.internal and gear.teeth is None and gear.ratio is None:
             yield Violation(
                 (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
@@ -69,16 +74,42 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
 
 
+@rule("flanks-rub")
+def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction by what presses knows no radial part of tooth forces, which presses, too."""
+    forces = draft.document.forces.values()
+    if not any(isinstance(own, FrictionEntry) and own.coefficient is not None for own in forces):
+        return
+    for name, gear in draft.document.couplings.items():
+        if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
+            message = "friction by a coefficient does not know yet what teeth push apart with"
+            hint = "set pressure_angle: 0 to leave that out, or give the friction as a torque"
+            yield Violation(("couplings", name), message, hint, key=True)
+
+
+@rule("belt-name")
+def belt_name(draft: DraftDocument) -> Iterator[Violation]:
+    """The pretension of a belt is a load by the belt's name."""
+    for name, belt in draft.document.couplings.items():
+        if isinstance(belt, BeltEntry) and name in draft.names.entries["forces"]:
+            message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
+            yield Violation(("couplings", name), message, "give one of them another name", key=True)
+
+
 @rule("coupling-sizes")
 def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
-    """Leads that are not zero, radii above zero, no pretension below it; ratios of differentials that move all three."""
+    """Leads that are not zero, radii above zero, no pretension below it; differentials that move all three shafts."""
     for name, own in draft.document.couplings.items():
         path = ("couplings", name)
         if isinstance(own, ScrewEntry) and own.lead == 0.0:
             yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
         if isinstance(own, BeltEntry):
             if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
-                yield Violation((*path, "radii"), f"{own.radii} are no radii of two pulleys", "two lengths above zero")
+                yield Violation(
+                    (*path, "radii"),
+                    f"{', '.join(f'{r:g}' for r in own.radii)} m are no radii of two pulleys",
+                    "two lengths above zero",
+                )
             if own.pretension < 0.0:
                 yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
         if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):
@@ -99,3 +130,68 @@ def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
             if factor == 0.0:
                 hint = "leave out the joint, or give its factor"
                 yield Violation(("couplings", name, "factors", i), "a factor of zero couples nothing", hint)
+
+
+@rule("rope-way")
+def rope_way(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope has two places at least; each is a point, or a sheave with a radius and perhaps an axis and a side."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name, "through")
+        if len(rope.through) < 2:
+            yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
+        for i, place in enumerate(rope.through):
+            for message, hint in wrong_places(place):
+                yield Violation((*path, i), message, hint)
+
+
+def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
+    """What is wrong with one place of a rope, each with a hint."""
+    if (place.point is None) == (place.sheave is None):
+        yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
+    elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
+        yield "a sheave without a radius", "radius: 0.3; a rope slides through a plain point, too: body.point"
+    elif place.point is not None:
+        keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
+        if keys:
+            yield f"{keys[0]} of a plain point", "a sheave is {sheave: body.point, radius: 0.3}"
+
+
+@rule("rope-bounds")
+def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope's length is positive and known; what catches pulls alone, with a restitution from 0 to 1."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name)
+        if rope.length is not None and not rope.length > 0.0:
+            yield Violation((*path, "length"), f"a rope of length {rope.length:g} m", "leave it out: as assembled")
+        if rope.length is not None and any(place.slip == "none" for place in rope.through):
+            message = "the length of a rope that is held on a sheave"
+            yield Violation((*path, "length"), message, "leave it out: what is wound on the sheave is not told, either")
+        if rope.restitution is None:
+            continue
+        if not 0.0 <= rope.restitution <= 1.0:
+            message = f"restitution {rope.restitution:g} is not between 0 and 1"
+            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: it rebounds as fast")
+        if not rope.tension_only:
+            message = "restitution of a rope that holds both ways, and so is never struck"
+            yield Violation((*path, "restitution"), message, "tension_only: true")
+
+
+@rule("cv-joint")
+def cv_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """Shafts that turn alike meet in a ball, in space."""
+    joints = draft.names.joints
+    for name, own in draft.document.couplings.items():
+        if not isinstance(own, f.ConstantVelocityEntry):
+            continue
+        path = ("couplings", name, "joint")
+        if own.joint not in joints:
+            yield Violation(path, f"'{own.joint}' is not a joint", did_you_mean(own.joint, joints, "joints") or "")
+        elif joints[own.joint] != "ball":
+            message = f"{own.joint} is a {joints[own.joint]}: a constant-velocity joint is made of a ball"
+            yield Violation(path, message, "type: ball; the coupling holds its turn about the shafts")
+        elif draft.document.head.space == "planar":
+            yield Violation(path, "shafts that turn alike have no bend in a plane", "a pin, or space: spatial")

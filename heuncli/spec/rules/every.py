@@ -16,17 +16,20 @@ from heuncli.spec.rules import (
     methods,
     naming,
     not_yet,
+    paths,
     plane,
     products,
     references,
+    rolling,
     sections,
     stops,
 )
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, plane, loads, stops, latches, couplings, cams, sections, analysis,
-    methods, conditions, expect, curves, not_yet,
+    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, rolling, cams,
+    sections,
+    analysis, methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 
 __all__ = ["MODULES", "RULES", "DraftDocument", "Rule", "Violation", "violations"]

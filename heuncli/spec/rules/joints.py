@@ -9,6 +9,7 @@ from heuncli import tolerances
 from heuncli.expressions.discontinuities import first_not_positive, jumps
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import DRIVEN, Driven, drive_of, driven_keys, point_in, span_of
@@ -23,6 +24,10 @@ def directions(draft: DraftDocument) -> Iterator[tuple[Path_, tuple[float, float
         for key in ("axis", "to_axis", "normal"):
             if getattr(joint, key, None) is not None:
                 yield ("joints", name, key), getattr(joint, key)
+    for name, wheel in document.rolling.items():
+        for key in ("axis", "normal"):
+            if getattr(wheel, key) is not None:
+                yield ("rolling", name, key), getattr(wheel, key)
     for name, section in document.sections.items():
         for key in ("normal", "first_axis"):
             if getattr(section, key) is not None:
@@ -59,7 +64,7 @@ def same_point(draft: DraftDocument) -> Iterator[Violation]:
             if owner is not None and start is not None and start == point_in(owner, load.to):
                 message = "from and to are the same point"
                 yield Violation(("forces", name, "to"), message, "a force at one point is type: force, in N")
-        if isinstance(load, f.BushingEntry) and load.from_.body == load.to.body:
+        if isinstance(load, fe.BushingEntry) and load.from_.body == load.to.body:
             message, hint = f"from and to are both on {load.to.body}", "what stands within one body moves nothing"
             yield Violation(("forces", name, "to"), message, hint)
         if not isinstance(load, f.ActuatorEntry | f.SpringEntry) or load.from_.body != load.to.body:

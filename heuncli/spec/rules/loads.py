@@ -10,6 +10,7 @@ from heuncli.expressions.discontinuities import first_negative
 from heuncli.expressions.programs import Expression, outside
 from heuncli.joint_kinds import FREE, POINT, TYPES, Kind, named, taking
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import span_of, type_of
 from heuncli.spec.words import MISSING
@@ -18,7 +19,7 @@ ON_MOTION = {"turning": "about a", "sliding": "along a"}
 FRICTION = {"turning": "torque", "sliding": "force"}  # the key of each motion
 
 
-InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | f.MotorEntry
+InJoint = f.TorqueEntry | f.TurnSpringEntry | f.DamperEntry | f.FrictionEntry | fe.MotorEntry
 LAW = {"turning": "torque", "sliding": "force"}  # the key of a law of a damper
 
 
@@ -40,7 +41,7 @@ def load_joint(draft: DraftDocument) -> Iterator[Violation]:
                 where = " or ".join(f"{ON_MOTION[fit.motions[0]]} {fit.name}" for fit in taking("torque"))
                 hint = "between two points use actuator, on a body couple"
                 yield Violation((*path, "joint"), f"a torque acts {where}, not in a {kind.name}", hint)
-        elif isinstance(load, f.MotorEntry):
+        elif isinstance(load, fe.MotorEntry):
             if kind.coordinates != ("angle",):
                 hint = "in a slide a thrust of type torque, by guide.speed"
                 yield Violation((*path, "joint"), f"a motor turns a pin, not a {kind.name}", hint)
@@ -115,12 +116,12 @@ def load_form(draft: DraftDocument) -> Iterator[Violation]:
         if law and beside:
             message = f"a {load.type} by {law[0]} and by {beside[0]}"
             yield Violation((*path, beside[0]), message, f"put all of it into {law[0]}, or leave that out", key=True)
-        if isinstance(load, f.BushingEntry) and all(
+        if isinstance(load, fe.BushingEntry) and all(
             getattr(load, key) is None
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
             yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
-        if isinstance(load, f.MotorEntry) and load.ratio == 0.0:
+        if isinstance(load, fe.MotorEntry) and load.ratio == 0.0:
             message = "a motor of ratio 0 turns nothing"
             yield Violation((*path, "ratio"), message, "turns of the motor for one of the joint, as 30")
 
@@ -161,9 +162,9 @@ def brake(draft: DraftDocument) -> Iterator[Violation]:
 def bushing_table(draft: DraftDocument) -> Iterator[Violation]:
     """The tables of a bushing have a value where it is not deflected."""
     for name, load in draft.document.forces.items():
-        for key in ("stiffness", "turning") if isinstance(load, f.BushingEntry) else ():
+        for key in ("stiffness", "turning") if isinstance(load, fe.BushingEntry) else ():
             laws = getattr(load, key)
-            parts = (laws.x, laws.y, laws.z) if isinstance(laws, f.ShiftLaws | f.TurnLaws) else laws
+            parts = (laws.x, laws.y, laws.z) if isinstance(laws, fe.ShiftLaws | fe.TurnLaws) else laws
             for law in parts if isinstance(parts, tuple) else (parts,):
                 if isinstance(law, Expression) and math.isnan(law.value(0.0, (0.0,))):
                     message, hint = outside(law.tables[0])
@@ -197,7 +198,7 @@ def load_dimension(draft: DraftDocument) -> Iterator[Violation]:
         sliding = kind.motions == ("sliding",)
         if isinstance(load, f.TorqueEntry):
             checks = [("value", load.value, u.FORCE if sliding else u.MOMENT)]
-        elif isinstance(load, f.TurnSpringEntry | f.MotorEntry):
+        elif isinstance(load, f.TurnSpringEntry | fe.MotorEntry):
             checks = []
         elif isinstance(load, f.DamperEntry):
             given = [load.coefficient] if load.coefficient is not None else []

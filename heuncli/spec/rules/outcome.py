@@ -249,8 +249,8 @@ def named(word: str, names: Names) -> list[str]:
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
-            held = [*entries["stops"], *entries["latches"], *entries["couplings"]]
-            return [*entries["forces"], *entries["drives"], *held, *shared]
+            own = ("forces", "drives", "stops", "latches", "couplings", "rolling")
+            return [*(name for block in own for name in entries[block]), *shared]
         case "BODY":
             return list(entries["bodies"])
         case "JOINT":
@@ -260,7 +260,7 @@ def named(word: str, names: Names) -> list[str]:
         case "STOP":
             return [*entries["stops"], *entries["latches"]]
         case "COUPLING":
-            return list(entries["couplings"])
+            return [*entries["couplings"], *entries["rolling"]]
         case "END":
             return [*entries["bodies"], GROUND]
         case "NUMBER":

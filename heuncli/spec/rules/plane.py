@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from heuncli import tolerances
 from heuncli.joint_kinds import ABOUT_AXIS, TYPES
 from heuncli.spec import format as f
+from heuncli.spec import format_elastic as fe
 from heuncli.spec import format_shapes as fs
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
 from heuncli.spec.semantics import body_axes
@@ -47,6 +48,8 @@ def not_planar(draft: DraftDocument) -> Iterator[Violation]:
                 given = getattr(load, key, None)
                 vector = tuple(x.constant for x in given or ())
                 yield from _out_of_plane(("forces", name, key), vector, LOADS[load.type])
+        elif isinstance(load, fe.BushingEntry):
+            yield from _bushing(("forces", name), load)
     for name, blow in draft.document.impulses.items():
         for key, forbidden in BLOWS.items():
             given = getattr(blow, key)
@@ -59,6 +62,17 @@ def _out_of_plane(path: Path_, vector: tuple[float | None, ...], forbidden: tupl
     for i, (letter, value) in enumerate(zip("xyz", vector, strict=False)):
         if letter in forbidden and value != 0.0:
             yield Violation((*path, i), f"in a planar scene {path[2]} has no {letter} component", OR_ELSE)
+
+
+def _bushing(path: Path_, load: fe.BushingEntry) -> Iterator[Violation]:
+    """One of its axes is the z axis, and what it is preloaded by lies in the plane."""
+    for key in ("orientation", "to_orientation"):
+        given = getattr(load, key)
+        if given is not None and abs(upright(given) - 1.0) > tolerances.UPRIGHT:
+            yield Violation((*path, key), "in a planar scene the axes of a bushing are turned about z only", OR_ELSE)
+    for key, forbidden in (("preload", ("z",)), ("turning_preload", ("x", "y"))):
+        if getattr(load, key) is not None:
+            yield from _out_of_plane((*path, key), getattr(load, key), forbidden)
 
 
 def _joints(draft: DraftDocument) -> Iterator[Violation]:

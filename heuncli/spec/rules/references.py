@@ -6,6 +6,8 @@ from collections.abc import Collection, Iterator
 
 from heuncli.nearest import did_you_mean
 from heuncli.spec import format as f
+from heuncli.spec import format_couplings as fc
+from heuncli.spec import format_elastic as fe
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.names import GROUND, mapping
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -21,12 +23,20 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
     for name, load in document.forces.items():
         if isinstance(load, f.ForceEntry | f.CoupleEntry):
             yield ("forces", name, "on"), load.on
-        elif isinstance(load, f.ActuatorEntry | f.SpringEntry | f.BushingEntry):
+        elif isinstance(load, fe.BushingEntry | f.ActuatorEntry | f.SpringEntry):
             yield ("forces", name, "from"), load.from_
             yield ("forces", name, "to"), load.to
     for name, blow in document.impulses.items():
         if blow.on is not None:
             yield ("impulses", name, "on"), blow.on
+    for name, coupling in document.couplings.items():
+        for i, place in enumerate(coupling.through if isinstance(coupling, fc.RopeEntry) else ()):
+            for key, end in (("point", place.point), ("sheave", place.sheave)):
+                if end is not None:
+                    yield ("couplings", name, "through", i, key), end
+    for name, wheel in document.rolling.items():
+        yield ("rolling", name, "wheel"), wheel.wheel
+        yield ("rolling", name, "on"), wheel.on
     for name, section in document.sections.items():
         end = end_of(section.reduce_to)
         if end is not None:
@@ -58,7 +68,7 @@ def ground_end(about: str) -> EndEntry:
 def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     """Every mention of a body: path, name, whether the ground may stand there."""
     for path, end in ends(draft):
-        may_be_ground = path[0] in ("joints", "foundation", "sections") or path[-1] in ("from", "to")
+        may_be_ground = path[0] in STANDING or path[-1] in ("from", "to")
         yield path, end.body, may_be_ground
     for name, section in draft.document.sections.items():
         yield ("sections", name, "body"), section.body, False
@@ -70,6 +80,7 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
             yield ("impulses", name, "body"), blow.body, False
 
 
+STANDING = ("joints", "couplings", "rolling", "foundation", "sections")  # where the ground may be named
 FIXED = frozenset({"world", "base", "frame", "earth", "fixed", "origin", "inertial"})  # the ground, elsewhere
 BLOCK_OF = {GROUND: GROUND}  # of points: where they stand
 

@@ -138,6 +138,7 @@ def shared_name(draft: DraftDocument) -> Iterator[Violation]:
         "impulses": {"joints": ropes, "drives": entries["drives"]},
         "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")},
         "latches": {block: entries[block] for block in ("joints", "forces", "drives", "impulses", "stops", "events")},
+        "rolling": {block: entries[block] for block in ("couplings", "forces", "drives", "stops", "latches")},
     }
     for block, others in beside.items():
         for name in entries[block]:

@@ -45,12 +45,19 @@ def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
     for condition in conditions:
         if isinstance(condition, ResultCondition):
             found[condition.name] = on_result(study, setup, condition)
-    last = next((c for c in conditions if c.ends), None)
-    if isinstance(last, ResultCondition):
-        became = found[last.name].times[found[last.name].to]
-        if len(became) and became[0] < study.results.time[-1]:
-            return ended(study, found, float(became[0]), solve)
+    first = min(
+        (t for c in conditions if isinstance(c, ResultCondition) and (t := ends_at(c, found)) is not None), default=None
+    )
+    if first is not None and first < study.results.time[-1]:
+        return ended(study, found, first, solve)
     return told(replace(study, changes=found))
+
+
+def ends_at(condition: WatchedCondition, found: Mapping[str, Changes]) -> float | None:
+    """The instant at which a condition ends the motion, if it does."""
+    changes = found[condition.name]
+    became = changes.times[changes.to]
+    return float(became[0]) if condition.ends and len(became) else None
 
 
 def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve) -> Study:
@@ -117,8 +124,7 @@ def before_failure(spec: Spec, solve: Solve, error: SolveError) -> Study:
             break
         with contextlib.suppress(SolveError):
             study = solve(spec._replace(analysis=spec.analysis._replace(times=times)))
-            ending = next(c for c in spec.analysis.conditions if c.ends)
-            if study.changes[ending.name].to.any():
+            if any(ends_at(c, study.changes) is not None for c in spec.analysis.conditions):
                 return replace(study, spec=spec)
             break
     raise error
@@ -220,9 +226,12 @@ def told(study: Study) -> Study:
             if name in study.changes:
                 events[name] = block(f"{stop.joint}.{stop.quantity} held", study.changes[name])
         results = changed(results, events=events)
-    last = next((c for c in conditions if c.ends), None)
-    if last is not None:
-        results = ending(results, last, study.changes[last.name])
+    for last in conditions:
+        changes = study.changes[last.name]
+        if last.ends and not (isinstance(last, ResultCondition) and last.why):
+            results = ending(results, last, changes)
+        elif isinstance(last, ResultCondition) and last.why:
+            results = with_reason(results, last, changes)
     return replace(study, results=results)
 
 
@@ -247,6 +256,21 @@ def ending(results: Results, last: WatchedCondition, changes: Changes) -> Result
         message = f"the condition to end, {last.text}, did not become true{began}"
         status = {"code": results.status["code"], "message": f"{results.status['message']}; {message}"}
     return changed(results, status=status, model=results.model | {"until": [message]})
+
+
+def with_reason(results: Results, condition: ResultCondition, changes: Changes) -> Results:
+    """The results with a sentence on a condition that an entry brings with it, if it ever is true."""
+    if changes.begins:
+        return changed(results, warnings=(*results.warnings, f"at the start {condition.why}"))
+    became = np.flatnonzero(changes.to)
+    if not len(became):
+        return results
+    k = int(became[0])
+    sentence = f"at t = {instant(float(changes.times[k]), float(changes.error[k]))} s {condition.why}"
+    if condition.ends:
+        status: Status = {"code": "stopped", "message": sentence}
+        return changed(results, status=status, model=results.model | {"until": [sentence]})
+    return changed(results, warnings=(*results.warnings, sentence))
 
 
 def instant(t: float, error: float) -> str:

@@ -19,7 +19,8 @@ import numpy as np
 from heuncli.kinetostatics.actions import AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_block
+from heuncli.kinetostatics.coupling_numbers import coupling_block
+from heuncli.kinetostatics.couplings import coupling_actions
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
@@ -48,6 +49,11 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         names = [body.name for body in mechanism.bodies]
         shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
         for own in recovery.couplings:
+            if own.coupling.given.type in ("gear", "screw", "belt"):
+                from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+
+                given = own.coupling.given
+                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.coupling_numbers import numbers_of
 from heuncli.kinetostatics.shares import Shares, foundation_shares, joint_shares
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, Block
@@ -17,7 +18,7 @@ def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, stat
             if load.joint.name in shown["joints"]:  # of single joints these alone are told
                 shown["joints"][load.joint.name]["shares"] = joint_shares(shares, load)
         for coupled in shares.couplings:
-            carried = {coupled.carries: coupled.carried}
+            carried = {number.name: number.values for number in numbers_of(coupled) if number.is_sum}
             shown["couplings"][coupled.coupling.name]["shares"] = shares.by_name(carried)
     if "foundation" in shown:
         for keys, own in foundation_shares(mechanism, states, shares, about).items():

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.diagnosis.solvability import require_directions, require_solvable
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
@@ -88,9 +89,26 @@ class Recovery:
         from heuncli.redundancy.resolve import Resolution, resolve  # a tree starts faster without it
 
         if self.told:
-            return Resolution(self.unsplit)
+            return self.flanked(Resolution(self.unsplit))
         setup = self.setup
-        return resolve(setup.runner, self.recovered, self.states, self.unsplit, self.least_norm, setup.known)
+        return self.flanked(
+            resolve(setup.runner, self.recovered, self.states, self.unsplit, self.least_norm, setup.known)
+        )
+
+    def flanked(self, found: Resolution) -> Resolution:
+        """With what holds the flanks of couplings together, after the split."""
+        layout = self.setup.scene.layout
+        if not layout.mechanism.couplings:
+            return found
+        from heuncli.kinetostatics.flanks import with_flanks  # few scenes have gears
+        from heuncli.redundancy.open_flanks import with_open_flanks
+
+        couplings = self.couplings_of(found)
+        left, stress = (
+            None if own is None else with_open_flanks(own, layout, found.joints, couplings)
+            for own in (found.left, found.stress)
+        )
+        return replace(found, joints=with_flanks(layout, found.joints, couplings), left=left, stress=stress)
 
     @property
     def verdicts(self) -> bool:
@@ -130,8 +148,12 @@ class Recovery:
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
         """What couplings exert."""
-        more = self.decided.more if self.decided is not None else None
-        return [own.plus(more) for own in coupling_loads(self.setup.scene.layout, self.recovered)]
+        return self.couplings_of(self.decided)
+
+    def couplings_of(self, decided: Resolution | None) -> list[CouplingLoads]:
+        """What they exert after a split."""
+        more = decided.more if decided is not None else None
+        return [own.plus(more) for own in coupling_loads(self.setup.scene.layout, self.recovered, self.states)]
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
@@ -152,6 +174,7 @@ class Recovery:
     @cached_property
     def shares(self) -> Shares:
         """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
+        from heuncli.kinetostatics.flanks import with_flanks
         from heuncli.kinetostatics.shares import members_of, shares_of  # few runs ask for them
 
         layout = self.setup.scene.layout
@@ -161,7 +184,8 @@ class Recovery:
         if self.decided is None:
             return found
         joints, more = self.decided.chosen(found.joints, self.states)
-        return replace(found, joints=joints, couplings=[own.plus(more) for own in found.couplings])
+        couplings = [own.plus(more) for own in found.couplings]
+        return replace(found, joints=with_flanks(layout, joints, couplings), couplings=couplings)
 
     @property
     def applied(self) -> list[Action]:
@@ -171,7 +195,8 @@ class Recovery:
     @cached_property
     def actions(self) -> list[Action]:
         """Everything that acts on the bodies but their weight; of a joint constraint and drive together."""
-        joints = whole_joint_actions(self.joints if self.verdicts else self.unsplit)
+        may_differ = self.verdicts or self.setup.scene.mechanism.couplings
+        joints = whole_joint_actions(self.joints if may_differ else self.unsplit)
         return [*self.applied, *joints, *coupling_actions(self.couplings)]
 
     @property
@@ -226,6 +251,7 @@ def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Seen
     """What follows from the kernel's answers; compared: as there. Raises SolveError where no acceleration exists."""
     if compared is None:  # else it was asked before
         require_solvable(setup.scene, recovered)
+        require_on_sheaves(setup.scene.layout, recovered)
         require_directions(setup.scene, recovered)
     found = Recovery(setup, recovered, least_norm, compared=compared)
     if setup.scene.mechanism.rubbing and found.decided is not None:

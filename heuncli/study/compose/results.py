@@ -57,7 +57,7 @@ def compose(
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
         model=model_of(setup, history, recovery),
-        status=status(history) if rest is None else rest.status,
+        status=status(history, setup.scene.mechanism) if rest is None else rest.status,
         time=own.times,
         **own.shown,
         impulses=struck.blocks() if struck is not None and BLOWS in wanted else [],
@@ -72,6 +72,7 @@ def compose(
         warnings=(
             *warnings(setup, history, recovery, own.shown.get("joints", {}), known["balance_residual"]),
             *beside_singular_poses(own.unknown),
+            *of_wheels(setup, history, own.shown, struck),
             *(rest.warnings if rest is not None else ()),
         ),
     )
@@ -97,6 +98,16 @@ def known_blocks(
     from heuncli.study.compose.near_singular import without_unknown  # only closed chains have singular poses
 
     return without_unknown(recovery, wanted, history.checked.run, history.jumps, tells)
+
+
+def of_wheels(setup: Setup, history: History, shown: Block, struck: Impulses | None) -> tuple[str, ...]:
+    """Warnings of wheels that lift or slip where no event tells it."""
+    if not setup.spec.rolling:
+        return ()
+    from heuncli.study.compose.wheels import at_the_instant, in_blows  # few scenes have them
+
+    alone = at_the_instant(setup.spec, shown.get("couplings", {})) if history.checked is None else ()
+    return (*alone, *(in_blows(setup.spec, struck) if struck is not None else ()))
 
 
 def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numpy as np
+
 from heuncli import tolerances
+from heuncli.integration.diagnosis.off_sheaves import slanting
+from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
@@ -13,13 +17,13 @@ from heuncli.study.solve.history import History
 MOST_TIMES = 5  # that a sentence lists
 
 
-def status(history: History) -> Status:
+def status(history: History, mechanism: Mechanism) -> Status:
     """Whether the run came to its end."""
     if history.checked is None:
         return {"code": "completed", "message": "one instant, nothing integrated"}
     run = history.checked.run
     if run.stopped is not None:
-        why = f"at t = {run.times[-1]:.6g} s the rod {run.stopped} would have to push (tension_only)"
+        why = f"at t = {run.times[-1]:.6g} s {would_let_go(mechanism, run.stopped)}"
         return {"code": "stopped", "message": why}
     return {"code": "completed", "message": f"{run.steps} steps to t = {run.times[-1]:.6g} s"}
 
@@ -34,9 +38,29 @@ def warnings(
     return (
         *unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
-        *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, joints)),
+        *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, recovery, joints)),
         *singular,
+        *slanting(setup.scene.layout, recovery.recovered),
+        *(pushing(recovery) if setup.scene.mechanism.couplings else ()),
     )
+
+
+def pushing(recovery: Recovery) -> list[str]:
+    """Sentences on belts of which a strand would have to push."""
+    lines = []
+    for own in recovery.couplings:
+        given = own.coupling.given
+        if given.type != "belt":
+            continue
+        lack = 0.5 * np.abs(own.carried) - given.pretension
+        if (lack > 0.0).any():
+            t = float(recovery.recovered.times[int(np.argmax(lack > 0.0))])
+            need = given.pretension + float(lack.max())
+            lines.append(
+                f"coupling {own.coupling.name}: at t = {t:.6g} s a strand of the belt would have to push; it needs a "
+                f"pretension of {need:.6g} N"
+            )
+    return lines
 
 
 def beside_singular_poses(unknown: Array) -> list[str]:
@@ -82,11 +106,25 @@ def of_the_motion(setup: Setup, history: History) -> list[str]:
     if checked.run.undecided:
         lines.append(f"of {checked.run.undecided} steps it could not be decided what loads do between their stages")
     if checked.run.stopped is not None:
-        lines.append(f"stopped before the end: {status(history)['message']}")
+        lines.append(f"stopped before the end: {status(history, setup.scene.mechanism)['message']}")
     return lines
 
 
-def of_ropes(setup: Setup, joints: Mapping[str, JointBlock]) -> list[str]:
-    """Ropes that would have to push at the one instant of a state."""
+def would_let_go(mechanism: Mechanism, name: str) -> str:
+    """What of a rope, or a cam, ends a run."""
+    kinds = {coupling.name: coupling.given.type for coupling in mechanism.couplings}
+    if kinds.get(name) == "cam":
+        return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
+    return f"the rod {name} would have to push (tension_only)"
+
+
+def of_ropes(setup: Setup, recovery: Recovery, joints: Mapping[str, JointBlock]) -> list[str]:
+    """Ropes that would have to push, and followers that would lift off, at the one instant of a state."""
     ropes = [j.name for j in setup.scene.mechanism.joints if j.tension_only and j.name in joints]
-    return [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
+    cams = [own for own in recovery.couplings if own.carries == "contact" and own.coupling.rows[0].tension_only]
+    told = [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
+    return told + [
+        f"the follower of cam {own.coupling.name} lifts off: the cam would have to pull"
+        for own in cams
+        if own.carried[0] < 0.0
+    ]

@@ -9,8 +9,9 @@ from contextlib import contextmanager
 from heuncli.errors import Problem, SolveError, SourceLocation
 from heuncli.spec.models import Spec
 
-NAMED = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|sections|analysis)\.\w+")
-ACTING = ("impulses", "stops", "latches", "joints", "drives")  # what takes part in a blow is told by its bare name
+NAMED = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")
+# what takes part in a blow is told by its bare name
+ACTING = ("impulses", "stops", "latches", "joints", "drives", "couplings", "rolling")
 WHERE = {"contacts-undecided": "stops"}  # where nothing at fault has a name
 RUN = "analysis"  # what is asked for: where nothing else is at fault
 

@@ -44,6 +44,11 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
     if mechanism.planar:
         block["plane"] = "declared"
     block["reasons"] = reasons(scene, block)
+    if rolls(mechanism):
+        from heuncli.redundancy.poses import freedoms_of_pose  # few scenes have wheels
+
+        block["pose_freedoms"] = freedoms_of_pose(runner) - scene.undetermined
+        block["reasons"].insert(1, poses_and_speeds(block))
     if layout.contacts:
         block["reasons"].append(one_sided(layout, runner.start_holding[: len(layout.contacts)] > 0.0))
     if found.at_start > found.generic:
@@ -59,6 +64,17 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
     if found.open < found.generic:
         block["given_way"] = found.generic - found.open
     return block
+
+
+def rolls(mechanism: Mechanism) -> bool:
+    """Whether wheels hold speeds and no poses."""
+    return any(row.parts[0].holds_speed for coupling in mechanism.couplings for row in coupling.rows)
+
+
+def poses_and_speeds(model: Block) -> str:
+    """How many freedoms poses have, and how many speeds, in a sentence."""
+    poses, speeds = count(model["pose_freedoms"], "freedom", "freedoms"), model["freedoms"]
+    return f"{poses} of pose, {speeds} of speed: what rolls without slip holds speeds, and no pose"
 
 
 def reductions(left_out: Sequence[str], scene: PreparedScene, reduced: Reduced | None) -> Block:

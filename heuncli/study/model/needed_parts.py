@@ -40,6 +40,8 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
             found.add(value)
         elif name == "joint":
             found |= bodies_of(spec.joints[value], spec)
+        elif name in ("ends", "through"):  # of couplings
+            found |= {body for one in value for body in bodies_of(one, spec)}
     for joint in getattr(item, "joints", ()):  # of couplings
         found |= bodies_of(spec.joints[joint], spec)
     return found & spec.bodies.keys()

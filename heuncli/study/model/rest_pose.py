@@ -7,8 +7,10 @@ import time
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
+from heuncli.linearisation.displacements import displacement
 from heuncli.linearisation.indifference import indifference
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
@@ -23,7 +25,8 @@ from heuncli.rest.steady_states import going_on, require_constant, require_stead
 from heuncli.results import Array, Status
 from heuncli.study.model.counts_and_lists import MOST_NAMES, count, some
 from heuncli.study.model.other_pose import other_pose
-from heuncli.tree.layout import Layout
+from heuncli.tree.held_speeds import holds_speed
+from heuncli.tree.layout import Layout, places_of_rates
 from heuncli.tree.prepare import PreparedScene
 
 
@@ -55,6 +58,8 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     require_together(runner, search.coordinates, search.begun())
     both = checked(scene, runner, 0.0)
     found = both.found
+    if holds_speed(runner.layout).any():
+        require_no_way(runner.layout, found.pose.state)
     require_steady(runner, found.coordinates, found.pose, found.slopes)
     law = found.slopes.law
     what = indifference(scene, 0.0, found.pose.holding, law)
@@ -70,6 +75,17 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
         warnings=(*unstable(own), *ridge(layout, both)),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
+
+
+def require_no_way(layout: Layout, state: Array) -> None:
+    """Raise SolveError [no-rest-pose] where wheels would have to roll to a rest pose: which one hangs on the way."""
+    place = places_of_rates(layout)
+    moved = layout.weights[place[place >= 0]] * displacement(layout, layout.y0, state)
+    if np.abs(moved).max(initial=0.0) <= tolerances.OFF_BALANCE:
+        return
+    message = "no rest pose: the start does not rest, and where wheels roll to hangs on the way there"
+    hint = "a motion with dampers rolls there: analysis: {duration: ...}; or draw the scene where it rests"
+    raise SolveError(Problem("no-rest-pose", message, hint=hint))
 
 
 def sentences(mechanism: Mechanism, own: Stability) -> list[str]:

@@ -17,6 +17,7 @@ from functools import cached_property, reduce
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
@@ -103,6 +104,7 @@ class LoadErrors:
     def add_part(self, several: Recovered, asked: Mask, before: Mask) -> None:
         """Instants that are answered with the same closure rows in all runs."""
         self.asked, self.before = asked, before
+        require_on_sheaves(self.setup.scene.layout, several)
         states = body_states(self.setup.scene.layout, several)
         self.last = SeenInstants(states) if self.keeping else None
         loads = applied_loads(self.setup.scene.mechanism, states, several)
@@ -119,7 +121,12 @@ class LoadErrors:
         self.last = SeenInstants(states, tuple(joints)) if self.keeping else None
         terms = BalanceTerms(self.setup, several, states, loads)
         applied = [load.action for load in loads]
-        coupled = coupling_actions(coupling_loads(self.setup.scene.layout, several))
+        couplings = coupling_loads(self.setup.scene.layout, several, states)
+        coupled = coupling_actions(couplings)
+        if couplings:
+            from heuncli.kinetostatics.flanks import with_flanks  # few scenes have gears
+
+            joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
             self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupled, terms)

@@ -8,13 +8,16 @@ import numpy as np
 
 from heuncli.cut_rows import rows_at
 from heuncli.errors import Finding
-from heuncli.kinetostatics.auto_properties import Cutting, joined
+from heuncli.kinetostatics.auto_properties import Cutting, joined, properties_of
 from heuncli.kinetostatics.section_axes import nearest_axis
+from heuncli.meshes.reading import mesh_of
 from heuncli.results import Results
 from heuncli.shapes.figure_kinds import Rectangle
-from heuncli.shapes.forms import Form
+from heuncli.shapes.forms import Form, form
+from heuncli.spec.models import Shape
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
+from tests.shared import triangles
 from tests.shared.scenes import near, study
 
 
@@ -92,6 +95,52 @@ def askew(x: float) -> str:
     return "refused" if isinstance(found, str) else "taken"
 
 
+def open_by(x: float) -> str:
+    """A box of side 1 from -1 to 0, one corner of a triangle off by x of the largest coordinate."""
+    off = triangles.box([-1, -1, -1], [0, 0, 0])
+    off[0, 0, 0] += x
+    try:
+        mesh = mesh_of(triangles.obj(off).encode(), "a.obj")
+    except Finding as finding:
+        return f"refused: {finding.code}"
+    near(mesh.volume, 1.0, 1.0, max(x, 1e-15))
+    return "one corner"
+
+
+def outline_of(corners: list[tuple[float, float]]) -> str:
+    """The cut through a prism of four corners, about e1 along y."""
+    prism = triangles.prism(np.array(corners), [(0, 1, 2), (0, 2, 3)], 1.0)
+    surface = mesh_of(triangles.obj(prism).encode(), "a.obj")
+    I = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+    body = form([Shape("mesh", density=1.0, mesh=surface, scale=1.0, at=(0.0, 0.0, 0.0), rotation=I)])
+    at = Cutting(body, np.array([1.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.0]), np.array([0.5]), np.zeros(1))
+    found = properties_of(at)
+    if not found.missing:
+        near(found.groups[0].values["area"], 2.0, 1.0)
+    return "refused" if found.missing else "taken"
+
+
+def sheared(x: float) -> str:
+    """A parallelogram of base 2 and height 1: I12 = s b h^3/12 of I1 = b h^3/12, I2 = h b^3/12 (1 + ...)."""
+    s = 2.0 * x
+    return outline_of([(-1 - s / 2, -0.5), (1 - s / 2, -0.5), (1 + s / 2, 0.5), (-1 + s / 2, 0.5)])
+
+
+def tapered(x: float) -> str:
+    """A trapezium of base 2 and height 1, its sides 2 (1 + t) and 2 (1 - t): sum x x y = -2 t h^2 b^3/8/30 ..."""
+    t = lean(x)
+    return outline_of([(-1 - t, -0.5), (1 + t, -0.5), (1 - t, 0.5), (-1 + t, 0.5)])
+
+
+def lean(x: float) -> float:
+    """The t for which the largest third moment of that trapezium is x of its area times its half width cubed.
+
+    About its middle sum y y y, x x y are odd in t, and small t leaves sum x x y = -(2/3) 3 t/6 of the sides' moments:
+    int (2/3) (1 - 2 t y)^3 y dy = -t/3, less what the centroid moves by, -t/6, times sum x x = 2/3.
+    """
+    return x * 2.0 / abs(-1.0 / 3.0 + 2.0 / 3.0 / 6.0)
+
+
 PART = Part(
     ("same instant, same place, same direction",),
     rows=(
@@ -100,6 +149,9 @@ PART = Part(
         Row("UPRIGHT", tilted, "fine", "refused: not-planar"),
         Row("EQUAL_COMPONENTS", equal, "x", "y"),
         Row("PRINCIPAL", askew, "taken", "refused"),
+        Row("MESH_DIGITS", open_by, "one corner", "refused: open-mesh"),
+        Row("OUTLINE_PRINCIPAL", sheared, "taken", "refused"),
+        Row("OUTLINE_SYMMETRIC", tapered, "taken", "refused"),
         Row("IN_PLANE", needs_side, "refused: needs-side", "fine"),
         Row("SAME_CUT", beside_a_cut, "row 1", "refused: unknown-path"),
         Row("OUTLINES_APART", two_legs, "fine", "warned: sections.s: the plane meets the body bar"),

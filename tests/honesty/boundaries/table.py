@@ -5,6 +5,7 @@ from __future__ import annotations
 from tests.honesty.boundaries import (
     accuracy,
     attitude_charts,
+    bushings,
     closure_rates,
     comes_near,
     contacts,
@@ -40,6 +41,7 @@ PARTS = (
     in_the_plane.PART,
     no_inertia.PART,
     friction.PART,
+    bushings.PART,
     contacts.PART,
     no_load.PART,
     oscillations.PART,

@@ -48,7 +48,8 @@ def parts_of(layout: Layout, island: Island) -> tuple[list[int], list[int]]:
     """The bodies (tree order) and the joints of an island's loops."""
     cut = {layout.rows[row] for row in island.rows.tolist()}
     bodies = sorted({body for k in cut for body in loop_of(layout, k)})
-    return bodies, sorted(cut | {layout.spanning.hangs[body].joint for body in bodies} - {-1})
+    joints = cut | {layout.spanning.hangs[body].joint for body in bodies} - {-1}
+    return bodies, sorted(k for k in joints if k < len(layout.mechanism.joints))  # and no couplings
 
 
 def freedoms_of(layout: Layout, bodies: list[int]) -> tuple[list[int], list[float]]:

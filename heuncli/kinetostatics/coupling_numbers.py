@@ -1,0 +1,106 @@
+"""The numbers that a coupling is told by, beside what it exerts on each body: a row a type that has its own.
+
+Each hangs on the multipliers of some of its conditions: where one of these is open, so is the number.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from heuncli.kinetostatics.couplings import CouplingLoads
+from heuncli.mechanism.model import GROUND
+from heuncli.records import record
+from heuncli.results import Array
+from heuncli.spec.couplings import RollingWheel
+
+
+@record
+class CoupledNumber:
+    """A number of a coupling, (..., n_t); rows: the places of the conditions that it hangs on, among the coupling's.
+
+    factor: times which the multiplier of a single condition is the number; 0: it is no such multiple; linear: but one
+    that changes in time.
+    """
+
+    name: str
+    values: Array
+    rows: tuple[int, ...]
+    is_moment: bool = False
+    factor: float = 0.0
+    linear: bool = False
+
+    @property
+    def is_sum(self) -> bool:
+        """Whether the shares of causes add up to it."""
+        return self.linear or self.factor != 0.0
+
+
+def numbers_of(loads: CouplingLoads) -> list[CoupledNumber]:
+    """The numbers of a coupling: of most the load that it carries."""
+    return NUMBERS.get(loads.coupling.given.type, carried)(loads)
+
+
+def components_of(loads: CouplingLoads) -> list[CoupledNumber]:
+    """Those that are the multiplier of one condition, of which sums may be certain."""
+    return [number for number in numbers_of(loads) if number.factor != 0.0]
+
+
+def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
+    """A coupling's block of the results; names: of the bodies."""
+    on = {
+        "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
+        for body, (place, force, moment) in loads.on_bodies().items()
+    }
+    return {number.name: number.values for number in numbers_of(loads)} | {"on": on, "open": []}
+
+
+def carried(loads: CouplingLoads) -> list[CoupledNumber]:
+    """The multiplier of its first condition: the force or the moment for which the coupling is there."""
+    name = loads.carries
+    return [CoupledNumber(name, loads.carried, (0,), name == "moment", float(name in ("force", "moment")), linear=True)]
+
+
+def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
+    """What the plane presses the wheel with, what keeps it from slipping, and both together; how much more would.
+
+    friction = sqrt(along^2 + aside^2),  force = sqrt(normal^2 + friction^2),  grip = coefficient normal - friction
+    """
+    given = loads.coupling.given
+    assert isinstance(given, RollingWheel)
+    (_, *rolling), every = loads.coupling.rows, tuple(range(len(loads.multipliers)))
+    normal = loads.multipliers[0]
+    ways = {row.parts[0].kind: values for row, values in zip(rolling, loads.multipliers[1:], strict=True)}
+    named = [("along", "rolls"), ("aside", "rolls_aside")]
+    found = [CoupledNumber("normal", normal, every[:1], factor=1.0)]
+    found += [
+        CoupledNumber(name, ways[kind], (1 + list(ways).index(kind),), factor=1.0)
+        for name, kind in named
+        if kind in ways
+    ]
+    square = np.sum(np.square(np.array(loads.multipliers[1:])), axis=0)
+    found.append(CoupledNumber("friction", np.sqrt(square), every[1:]))
+    found.append(CoupledNumber("force", np.sqrt(square + np.square(normal)), every))
+    if given.friction is not None:
+        found.append(CoupledNumber("grip", given.friction * normal - np.sqrt(square), every))
+    return found
+
+
+def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
+    """Its tension; where sheaves hold it that before the first of them, and that behind the last."""
+    found = [CoupledNumber("tension", -loads.multipliers[0], (0,), factor=-1.0)]
+    if len(loads.multipliers) > 1:
+        found.append(CoupledNumber("last_tension", -loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0))
+    return found
+
+
+def of_constant_velocity(loads: CouplingLoads) -> list[CoupledNumber]:
+    """The torque ON `to` about either shaft, of the couple m on the plane that halves the bend: m . m, as m = cos b/2."""
+    m = np.sum([part.m for part in loads.parts], axis=0)
+    return [CoupledNumber("torque", loads.multipliers[0] * np.sum(m * m, axis=-1), (0,), is_moment=True, linear=True)]
+
+
+NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
+    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity,
+}  # fmt: skip

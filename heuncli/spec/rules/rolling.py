@@ -1,0 +1,61 @@
+"""Wheels: round about an axle, on a plane that is another body's, with numbers that a wheel can have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli import tolerances
+from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.names import GROUND
+from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+from heuncli.spec.turns import unit
+
+
+@rule("wheel-form")
+def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A disc has an axle, a sphere none; a wheel rolls on another body's plane."""
+    planar = draft.document.head.space == "planar"
+    for name, wheel in draft.document.rolling.items():
+        path = ("rolling", name)
+        if wheel.shape == "disc" and wheel.axis is None and not planar:
+            hint = "axis: that of its axle, in its own axes, as [0, 1, 0]; what is round all over is shape: sphere"
+            yield Violation(path, "a disc without an axle", hint, key=True)
+        for key in ("axis", "slides") if wheel.shape == "sphere" else ():
+            if getattr(wheel, key) is not None:
+                yield Violation((*path, key), f"a sphere with {key}", "leave it out, or leave shape out", key=True)
+        if wheel.wheel.body == wheel.on.body:
+            message, hint = (
+                f"wheel and on are both on {wheel.on.body}",
+                "a wheel rolls on another body, or on the ground",
+            )
+            yield Violation((*path, "on"), message, hint)
+        elif wheel.wheel.body == GROUND:
+            yield Violation(
+                (*path, "wheel"), "the ground does not roll", "the wheel is a body, the plane may be ground's"
+            )
+        if wheel.friction is not None and wheel.friction < 0.0:
+            message = f"a coefficient of friction of {wheel.friction:g}"
+            yield Violation((*path, "friction"), message, "a number from 0 on, as 0.8; left out nothing slips")
+        for event in (f"{name}_lifts", f"{name}_slips"):
+            if event in draft.document.analysis.events:
+                message = f"'{event}' is taken: so the wheel's own event is called"
+                yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
+        if planar:
+            yield from out_of_plane(path, wheel)
+
+
+def out_of_plane(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:
+    """In the xy plane wheels turn about z, on lines, along which they roll."""
+    for key, across in (("axis", True), ("normal", False)):
+        direction = getattr(wheel, key)
+        if direction is None or direction == (0.0, 0.0, 0.0):
+            continue
+        x, y, z = unit(direction)
+        if (math.hypot(x, y) if across else abs(z)) > tolerances.PARALLEL:
+            wants = "is the z axis" if across else "lies in the xy plane"
+            hint = "or declare space: spatial"
+            yield Violation((*path, key), f"in a planar scene {key} of a wheel {wants}", hint)
+    if wheel.slides is not None:
+        message = "in a planar scene a wheel that slides along its track holds nothing but its distance"
+        yield Violation((*path, "slides"), message, "a joint of type plane does that", key=True)

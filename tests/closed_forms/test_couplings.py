@@ -1,0 +1,219 @@
+"""Ratios, belts, screws and differentials by hand; geared shafts struck and swinging; starts that couplings ask for."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SolveError, SpecError
+from heuncli.oscillations.study import modes
+from heuncli.spec.load import load
+from tests.oracle.values import to_yaml
+from tests.shared.gear_trains import STATE, pair, pin, wheel
+from tests.shared.scenes import near, solved
+
+ROUNDING = 1e-12
+RADII = 0.05, 0.1
+
+
+def belt(**more: Any) -> dict[str, Any]:
+    """Two pulleys 0.5 m apart, the first turned by 5 N m; the second 0.1 m higher along the axis."""
+    scene = pair()
+    scene["ground"]["points"]["B"] = [0.5, 0, 0.1]
+    scene["bodies"]["wheel"] = wheel(0.2, (0.5, 0, 0.1), 2.0)
+    scene["couplings"] = {"strap": {"type": "belt", "of": ["p", "w"], "radii": list(RADII), "pretension": 60} | more}
+    return scene
+
+
+@pytest.mark.parametrize("crossed", [False, True])
+def test_belt(crossed: bool) -> None:
+    """The strands pull along the lines that touch both pulleys, in the plane of the first."""
+    r1, r2 = RADII
+    found = solved(belt(crossed=crossed))
+    sense = -1.0 if crossed else 1.0
+    near(found.coordinates["w"]["rate"], sense * 10 * r1 / r2, 10, ROUNDING)
+    turned = 5 / (0.02 + 0.2 / 4)
+    F = (5 - 0.02 * turned) / r1
+    told = found.couplings["strap"]
+    near(told["force"], F, F, ROUNDING)
+    near((told["tight"], told["slack"]), ((60 + F / 2,), (60 - F / 2,)), F, ROUNDING)
+    slope = math.asin((r1 + r2 if crossed else r2 - r1) / 0.5)
+    # above the pinion the belt comes tight; seen from the wheel it falls, or crossed rises, towards the pinion
+    down = (1.0 if crossed else -1.0) * math.sin(slope)
+    tight, slack = ((-math.cos(slope), side * down, 0.0) for side in (1.0, -1.0))
+    pull = (60 + F / 2) * np.array(tight) + (60 - F / 2) * np.array(slack)
+    near(found.joints["w"]["force"][0], -pull, F, ROUNDING)
+    near(found.joints["p"]["force"][0], pull, F, ROUNDING)
+    near(found.joints["w"]["moment"][0], np.cross((0, 0, 0.1), pull), F, ROUNDING)
+    near(found.foundation["force"][0], 0.0, F, ROUNDING)
+    assert not found.warnings
+
+
+def test_belt_that_would_push_is_told() -> None:
+    found = solved(belt(pretension=30))
+    turned = 5 / (0.02 + 0.2 / 4)
+    need = (5 - 0.02 * turned) / RADII[0] / 2
+    assert any("strap" in said and f"{need:.6g} N" in said for said in found.warnings)
+    near(found.couplings["strap"]["slack"], 30 - need, need, ROUNDING)
+
+
+def screw(**more: Any) -> dict[str, Any]:
+    """A nut of 20 kg on a spindle, lifted or falling."""
+    return {
+        "gravity": [0, 0, -9.81],
+        "ground": {"points": {"A": [0, 0, 0], "B": [0.2, 0, 0]}},
+        "bodies": {"spindle": wheel(0.02), "nut": wheel(0.3, (0.2, 0, 0), 20.0)},
+        "joints": {
+            "p": pin("ground.A", "spindle.c", initial={"rate": 10}),
+            "n": {"type": "slide", "from": "ground.B", "to": "nut.c", "axis": [0, 0, 1]},
+        },
+        "couplings": {"thread": {"type": "screw", "of": ["p", "n"], "lead": "10 mm"} | more},
+        "analysis": STATE,
+    }
+
+
+@pytest.mark.parametrize("order", [["p", "n"], ["n", "p"]])
+def test_screw_between_a_spindle_and_a_nut(order: list[str]) -> None:
+    """The spindle is as heavy as 0.02 (2 pi / lead)^2 to the nut; the thread's torque goes into the nut's guide."""
+    found = solved(screw(of=order))
+    by = 0.01 / math.tau
+    near(found.coordinates["n"]["speed"], 10 * by, 10 * by, ROUNDING)
+    falls = -20 * 9.81 / (20 + 0.02 / by**2)
+    near(found.coordinates["n"]["acceleration"], falls, -falls, 1e-9)
+    thrust = 20 * (9.81 + falls)
+    near(found.couplings["thread"]["force"], thrust, thrust, ROUNDING)
+    near(found.couplings["thread"]["torque"], thrust * by, thrust, ROUNDING)
+    near(found.joints["p"]["force"][0], (0, 0, 9.81 + thrust), thrust, ROUNDING)
+    near(found.joints["n"]["moment"][0][2], -thrust * by, thrust, ROUNDING)
+
+
+def test_screw_in_a_cylinder() -> None:
+    scene = screw(of=["n"], lead="1 m")
+    del scene["bodies"]["spindle"], scene["joints"]["p"]
+    scene["joints"]["n"]["type"] = "cylinder"
+    scene["bodies"]["nut"]["points"]["c"] = [0.2, 0, 0]
+    found = solved(scene)
+    by = 1 / math.tau
+    falls = -20 * 9.81 / (20 + 0.3 / by**2)
+    near(found.coordinates["n"]["acceleration"], falls, 9.81, ROUNDING)
+    near(found.coordinates["n"]["angular_acceleration"], falls / by, 9.81 / by, ROUNDING)
+    near(found.couplings["thread"]["on"]["nut"]["force"][0], (0, 0, 20 * (9.81 + falls)), 200, ROUNDING)
+    near(found.couplings["thread"]["on"]["nut"]["moment"][0], (0, 0, 0.3 * falls / by), 200, ROUNDING)
+
+
+def three_shafts(**more: Any) -> dict[str, Any]:
+    """Three discs on one axis; 3 N m on the carrier."""
+    return {
+        "ground": {"points": {"A": [0, 0, 0], "B": [0, 0, 1], "C": [0, 0, 2]}},
+        "bodies": {
+            "one": wheel(0.1), "two": wheel(0.1, (0, 0, 1)), "cage": wheel(0.05, (0, 0, 2)),
+        },
+        "joints": {"a": pin("ground.A", "one.c"), "b": pin("ground.B", "two.c"), "c": pin("ground.C", "cage.c")},
+        "couplings": {"axle": {"type": "differential", "of": ["a", "b", "c"]} | more},
+        "forces": {"engine": {"type": "torque", "joint": "c", "value": 3}},
+        "analysis": STATE,
+    }  # fmt: skip
+
+
+def test_differential_halves_the_torque_whatever_turns() -> None:
+    scene = three_shafts()
+    scene["joints"]["a"]["initial"], scene["joints"]["b"]["initial"] = {"rate": 7}, {"rate": 1}
+    scene["forces"]["drag"] = {"type": "torque", "joint": "a", "value": -1}
+    found = solved(scene)
+    near(found.coordinates["c"]["rate"], 4, 4, ROUNDING)
+    # lambda on each wheel, -2 lambda on the cage: 0.1 a = l - 1, 0.1 b = l, 0.05 c = 3 - 2 l, a + b = 2 c
+    load = (10 + 2 * 3 / 0.05) / (20 + 4 / 0.05)
+    near(np.abs(found.couplings["axle"]["moment"]), load, 1.0, ROUNDING)
+    near(found.coordinates["b"]["acceleration"], load / 0.1, load / 0.1, ROUNDING)
+
+
+def test_differential_of_another_ratio_is_willis() -> None:
+    scene = three_shafts(ratio=-3)
+    scene["joints"]["a"]["initial"], scene["joints"]["b"]["initial"] = {"rate": 8}, {"rate": 0}
+    near(solved(scene).coordinates["c"]["rate"], 2, 8, ROUNDING)
+
+
+def test_ratio_with_a_constant_moves_what_nothing_holds() -> None:
+    """2 a - b = 3 rad: with a held at 4 rad b goes to 5 rad, nearest by turns counted on, not to 5 - 2 pi."""
+    scene = three_shafts()
+    scene["couplings"] = {"r": {"type": "ratio", "of": ["a", "b"], "factors": [2, -1], "is": "3 rad"}}
+    scene["joints"]["a"]["initial"] = {"angle": 4, "rate": 1}
+    found = solved(scene)
+    near(found.coordinates["a"]["angle"], 4, 1, ROUNDING)
+    near(found.coordinates["b"]["angle"], 5, 1, ROUNDING)
+    near(found.coordinates["b"]["rate"], 2, 1, ROUNDING)
+    scene["joints"]["b"]["initial"] = {"angle": 2}
+    with pytest.raises(SolveError) as refused:
+        solved(scene)
+    (problem,) = refused.value.problems
+    assert problem.code == "does-not-fit" and problem.about == "couplings.r" and "3 rad" in problem.message
+
+
+def test_ratio_of_an_angle_and_a_travel() -> None:
+    scene = screw()
+    scene["couplings"] = {"r": {"type": "ratio", "of": ["n", "p"], "factors": [1, -0.01 / math.tau]}}
+    scene["joints"]["n"]["initial"] = {"travel": 0.3}
+    plain, found = solved(screw()), solved(scene)
+    near(found.coordinates["n"]["acceleration"], plain.coordinates["n"]["acceleration"], 9.81, ROUNDING)
+    near(np.abs(found.couplings["r"]["force"]), plain.couplings["thread"]["force"], 200, ROUNDING)
+
+
+def test_a_blow_on_one_gear_turns_both_at_once() -> None:
+    """An angular impulse meets the reflected inertia; the teeth hand on their share of it."""
+    scene = pair(teeth=[20, 60], helix="15 deg")
+    scene["joints"]["p"].pop("initial")
+    scene["impulses"] = {"blow": {"body": "pinion", "couple": [0, 0, 3]}}
+    del scene["forces"]
+    scene["analysis"] = {"type": "impulse"}
+    (struck,) = solved(scene).impulses
+    after = 3 / (0.02 + 0.2 / 9)
+    near(struck["bodies"]["pinion"]["angular_velocity_jump"], (0, 0, after), after, ROUNDING)
+    near(struck["bodies"]["wheel"]["angular_velocity_jump"], (0, 0, -after / 3), after, ROUNDING)
+    push = (3 - 0.02 * after) / 0.1
+    on = struck["couplings"]["mesh"]["on"]["wheel"]["force"]
+    radial = push * math.tan(math.radians(20)) / math.cos(math.radians(15))
+    near(on, (radial, push, -push * math.tan(math.radians(15))), push, ROUNDING)
+    near(struck["joints"]["w"]["force"], -np.asarray(on), push, ROUNDING)
+
+
+def test_modes_of_geared_shafts() -> None:
+    """A spring of 50 N m/rad about the wheel's axis swings it with nine times the pinion's inertia."""
+    scene = pair(teeth=[20, 60])
+    scene["joints"]["p"].pop("initial")
+    scene["forces"] = {"spring": {"type": "turn_spring", "joint": "w", "stiffness": 50}}
+    (mode,) = modes(load("scene.yaml", to_yaml(scene))).modes
+    wanted = math.sqrt(50 / (0.2 + 9 * 0.02))
+    assert mode.eigenvalue.imag == pytest.approx(wanted, rel=1e-9)
+
+
+def test_drives_that_fight_are_refused() -> None:
+    scene = pair(teeth=[20, 60])
+    scene["joints"]["p"].pop("initial")
+    scene["drives"] = {"d": {"joint": "p", "angle": "t"}, "e": {"joint": "w", "angle": "t"}}
+    del scene["forces"]
+    with pytest.raises(SolveError) as refused:
+        solved(scene)
+    (problem,) = refused.value.problems
+    assert problem.code == "rates-do-not-fit" and problem.about == "couplings.mesh"
+
+
+@pytest.mark.parametrize(
+    ("scene", "code"),
+    [
+        (belt(radii=[0.05]), "coupling-sizes"),
+        (belt(radii=[0.05, 0.6]), "belt-axes"),
+        (belt(pretension=-1), "coupling-sizes"),
+        (screw(lead=0), "coupling-sizes"),
+        (screw(of=["p"]), "screw-joints"),
+        (three_shafts(ratio=1), "coupling-sizes"),
+        (three_shafts(of=["a", "b"]), "coupling-count"),
+    ],
+)
+def test_what_couplings_cannot_be_is_refused(scene: dict[str, Any], code: str) -> None:
+    with pytest.raises(SpecError) as refused:
+        solved(scene)
+    assert {problem.code for problem in refused.value.problems} == {code}
+    assert all(problem.hint and problem.location for problem in refused.value.problems)
