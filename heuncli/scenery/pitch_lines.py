@@ -63,4 +63,3 @@ def circle(joints: Sequence[Any], bodies: Sequence[Any], k: int, member: GearMem
     turn = np.linspace(0.0, 2.0 * np.pi, CORNERS + 1)[:, None]
     found: Array = point + height * axis + r * (np.cos(turn) * e + np.sin(turn) * f)
     return found
-
