@@ -49,7 +49,7 @@ class Freedoms:
         """bodies: places in the tree, with all that hangs on them."""
         self.layout, self.t = layout, t
         self.workspace = unsettled(layout)
-        rate_at = places_of_rates(layout)
+        rate_at = places_of_rates(layout).astype(np.intp)
         own = [n for i in sorted(bodies) for n in _answers(layout, i) if rate_at[n] >= 0]
         self.answers: Indices = np.array(own, dtype=int)
         self.rate_at: Indices = rate_at[self.answers]

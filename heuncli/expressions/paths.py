@@ -88,9 +88,10 @@ class Path:
             curved = square + np.sum(off * bend, axis=-1)
             to = np.clip(found - np.sum(off * slope, axis=-1) / np.where(curved > 0.0, curved, square), low, high)
             if np.all(np.abs(to - found) <= np.finfo(float).eps * (abs(self.first) + abs(self.last))):
-                return to
+                return np.asarray(to)
             found = to
-        return found
+        nearest: Array = found
+        return nearest
 
     @property
     def greatest(self) -> tuple[float, float, float]:
@@ -137,7 +138,7 @@ def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]
 def merged(knots: Array, span: float) -> Array:
     """Knots without those that only rounding tells apart; the ends stay."""
     apart = np.diff(knots) > tolerances.SAME_VALUE * span
-    kept = knots[np.append(True, apart)]
+    kept: Array = knots[np.append(True, apart)]
     kept[-1] = knots[-1]
     return kept
 

@@ -241,7 +241,7 @@ def across_path(joint: Joint, path: Path, states: BodyStates, force: Array) -> A
     n = slope / np.sqrt(np.sum(slope * slope, axis=1))[:, None]
     if joint.a >= 0:
         n = np.einsum("tij,tj->ti", states.R[:, joint.a], n)
-    return force - np.sum(force * n, axis=-1)[..., None] * n
+    return np.asarray(force - np.sum(force * n, axis=-1)[..., None] * n)
 
 
 def constraint_map(joint: Joint, states: BodyStates) -> Array:

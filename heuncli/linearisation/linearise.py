@@ -82,7 +82,7 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
         by_rate=found.tangent[np.ix_(rates, rates)],
         tangent=tangent,
         drift=drift,
-        posed=posed(layout, at.chosen, found.rates[:, rates], found.rates @ shown, weights),
+        posed=posed(layout, np.array(at.chosen, dtype=int), found.rates[:, rates], found.rates @ shown, weights),
         across=across / layout.tables["closures"]["weight"][at.chosen],
         **motions_of_bodies(layout, poses, found.omega[..., rates], found.v[..., rates]),
     )

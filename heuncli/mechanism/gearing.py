@@ -126,9 +126,10 @@ def members(joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
         return carrier, member(joints, bodies, of[0], carrier), member(joints, bodies, of[1], carrier)
     for arm, joint in enumerate(joints):
         for k, other in (of, of[::-1]):
-            base, carrier = _ends(joint, joints[k], joints[other])
-            if base is None or carrier is None or joint.kind != "pin":
+            base, held = _ends(joint, joints[k], joints[other])
+            if base is None or held is None or joint.kind != "pin":
                 continue
+            carrier = held
             own = coaxial(joints, bodies, k, arm, base, carrier)
             if own is not None:
                 mate = member(joints, bodies, other, carrier)

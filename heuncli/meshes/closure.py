@@ -107,7 +107,7 @@ def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
     number: Numbers = np.unique(first, return_inverse=True)[1].reshape(-1).astype(np.intp)
     middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
     (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
-    volumes = np.bincount(number, V)
+    volumes: Array = np.bincount(number, V).astype(np.float64)
     whole = float(volumes.sum())
     size = float(np.abs(np.stack([a, b, c])).max()) ** 3
     if not abs(whole) > size * np.finfo(float).eps * 64.0:
@@ -116,7 +116,7 @@ def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
         turned = whole < 0.0
     else:
         turned = _is_inward(soup, number, volumes)
-    triangles = soup.triangles[:, [0, 2, 1]] if turned else soup.triangles
+    triangles: Numbers = soup.triangles[:, [0, 2, 1]] if turned else soup.triangles
     return Shells(number, -volumes if turned else volumes, triangles, turned)
 
 

@@ -5,13 +5,11 @@ One class a type; joints and bodies by their names. As in spec/models.py, None i
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 from heuncli.expressions.programs import TableFunction
 from heuncli.named_tuples import NamedTuple
-
-if TYPE_CHECKING:
-    from heuncli.spec.models import End, Vec  # which knows this module
+from heuncli.spec.ends import End, Vec
 
 
 class Term(NamedTuple):

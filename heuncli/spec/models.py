@@ -18,13 +18,14 @@ from heuncli.errors import Problem, SourceLocation
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
-from heuncli.spec.couplings import Coupling
+from heuncli.spec.couplings import Coupling, RollingWheel
+from heuncli.spec.ends import End as End
+from heuncli.spec.ends import Vec as Vec
 
 if TYPE_CHECKING:
     from heuncli.expressions.paths import Path
     from heuncli.meshes.model import TriangleMesh
 
-Vec = tuple[float, float, float]
 Matrix = tuple[Vec, Vec, Vec]
 Vector = tuple[Expression, Expression, Expression]
 Frame = Literal["world", "body"]
@@ -39,14 +40,6 @@ RIGID: Vec = (math.inf, math.inf, math.inf)  # a stiffness that is not given
 NOWHERE: Mapping[str, SourceLocation] = MappingProxyType({})
 NO_CASES: Mapping[str, str] = MappingProxyType({})
 NO_COUPLINGS: Mapping[str, Coupling] = MappingProxyType({})
-
-
-class End(NamedTuple):
-    """A point of a body ("ground" or a body's name), in its axes; name is None for one given by coordinates."""
-
-    body: str
-    point: Vec
-    name: str | None = None
 
 
 class Ground(NamedTuple):
@@ -536,9 +529,9 @@ class Spec(NamedTuple):
     couplings: Mapping[str, Coupling] = NO_COUPLINGS
 
     @property
-    def rolling(self) -> Mapping[str, Coupling]:
+    def rolling(self) -> Mapping[str, RollingWheel]:
         """The couplings that are wheels, which stand in a block of their own."""
-        return {name: given for name, given in self.couplings.items() if given.type == "wheel"}
+        return {name: given for name, given in self.couplings.items() if isinstance(given, RollingWheel)}
 
     def location(self, path: str) -> SourceLocation:
         """Where a dotted path stands, or the nearest thing around it that does."""

@@ -7,7 +7,7 @@ import numpy as np
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.cam_profiles import Flank, flank
 from heuncli.mechanism.couplings import Coupling
-from heuncli.results import Array
+from heuncli.results import Array, Mask
 from heuncli.tree.layout import Layout
 
 
@@ -47,7 +47,7 @@ def cut_away(layout: Layout, cam: Coupling) -> Problem | None:
     return Problem("cam-undercut", message, hint=hint, about=f"couplings.{cam.name}")
 
 
-def runs(angles: Array, which: Array) -> list[tuple[float, float]]:
+def runs(angles: Array, which: Mask) -> list[tuple[float, float]]:
     """The first and the last of neighbouring angles that are marked, each run of them."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], which, [False]]).astype(int)))
     return [(float(angles[a]), float(angles[b - 1])) for a, b in zip(edges[::2], edges[1::2], strict=True)]

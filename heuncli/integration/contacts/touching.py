@@ -34,7 +34,7 @@ class Touching:
     reach: Array
     restitution: Array
 
-    def some(self, own: Indices) -> Touching:
+    def some(self, own: Indices | Mask) -> Touching:
         """Some of them."""
         return Touching(**{name: value[own] for name, value in fields(self).items()})
 

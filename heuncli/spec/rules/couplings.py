@@ -41,10 +41,10 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
 def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
     """Every type is of so many joints."""
     for name, coupling in draft.document.couplings.items():
-        counts = COUNTS.get(coupling.type)
-        if counts is not None and len(coupling.of) not in counts:
+        counts, of = COUNTS.get(coupling.type), getattr(coupling, "of", [])
+        if counts is not None and len(of) not in counts:
             some = " or ".join(map(str, counts))
-            message = f"{', '.join(coupling.of) or 'nothing'} is named"
+            message = f"{', '.join(of) or 'nothing'} is named"
             yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
 
 
