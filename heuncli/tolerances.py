@@ -29,6 +29,7 @@ NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value,
 
 # -- couplings: what of a drawing decides whether gears fit
 TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
+STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain
@@ -252,8 +253,6 @@ INERTIA_REFUSED = 1e-3  # of the largest moment: bound on a broken triangle rule
 INERTIA_TYPED = 1e-9  # of the largest moment: moments typed with ten digits keep the rule, and symmetry, this well
 AT_LIMIT = 1e-9  # of the size, or rad: a start beyond a limit by less stands at it, by the ten digits that are typed
 LEAST_STRENGTH = 1e6  # [Pa] below what bars are made of (foams aside): a strength in MPa was written without its unit
-ALONG_AXIS = 1e-9  # sine or cosine: axes in typed digits that are meant to be parallel, or square
-STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 TABLE_ENDS = 1e-6  # of the span: a table's period and the values at its ends are printed with seven digits
 EXPECTED_RELATIVE = 1e-6  # of the largest number expected: default of `rel` (manual/format.md, "Expect")
 EXPECTED_ABSOLUTE = 1e-9  # default of `abs`

@@ -13,6 +13,12 @@ FORCE_WORDS = {
     "line_load": "distributed", "udl": "distributed", "uniform": "distributed", "distributed_load": "distributed",
     "line_force": "distributed",
 }  # fmt: skip
+COUPLING_WORDS = {
+    "gears": "gear", "spur": "gear", "bevel": "gear", "rack": "gear", "rackpinion": "gear", "rack_and_pinion": "gear",
+    "chain": "belt", "pulley": "rope", "sheave": "rope", "hoist": "rope", "tackle": "rope", "spindle": "screw",
+    "lead_screw": "screw", "leadscrew": "screw", "nut": "screw", "couple": "ratio", "mimic": "ratio", "linear": "ratio",
+    "follower": "cam", "constant_velocity": "cv", "homokinetic": "cv",
+}  # fmt: skip
 SHAPE_WORDS = {
     "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",
     "disc": "cylinder", "cuboid": "box", "cube": "box", "brick": "box", "ball": "sphere", "frustum": "cone",
@@ -141,5 +147,6 @@ LATER = {  # of the format, but of a later version: (block or key, word)
 TYPES = {  # by the key above the entry: code, what it is called, foreign words
     "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),
     "forces": ("unknown-force-type", "a force type", FORCE_WORDS),
+    "couplings": ("unknown-coupling-type", "a coupling type", COUPLING_WORDS),
     "shapes": ("unknown-shape-type", "a shape", SHAPE_WORDS),
 }

@@ -259,7 +259,9 @@ def fits(stays: Sequence[Stay], way: RopeWay, k: int, up: Array) -> bool:
 # The conditions
 
 
-def parts_between(start: Assembly, stays: Sequence[Stay], way: RopeWay, first: int, last: int) -> tuple[CouplingPart, ...]:
+def parts_between(
+    start: Assembly, stays: Sequence[Stay], way: RopeWay, first: int, last: int
+) -> tuple[CouplingPart, ...]:
     """The parts of the condition between two places where a rope is held."""
     count = last - first
     signed = [s * x.radius for s, x in zip(way.sides, stays, strict=True)]

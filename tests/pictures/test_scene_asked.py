@@ -67,6 +67,7 @@ def test_every_kind_of_joint_has_its_symbol(kind: str, end: str) -> None:
     row = TYPES[kind]
     keys = f", {row.axis_key}: [0, 0, 1]" if row.axis_key else ""
     keys += ", to_axis: [1, 0, 0]" if row.to_axis == "required" else ""
+    keys += ", x: {x: [0, 1], y: [0, 1]}" if kind == "curve" else ""
     text = KINDS.replace("KIND", kind).replace("END", end).replace(" KEYS", keys)
     figures = [as_assembled(load("kinds.yaml", text), view) for view in ("x", "z", "30,20")]
     for figure in figures:
@@ -81,7 +82,7 @@ def test_every_kind_of_joint_has_its_symbol(kind: str, end: str) -> None:
 def test_the_symbols_follow_from_the_rows_of_joints() -> None:
     for kind in JOINTS.values():
         assert turning(kind) in TURNS
-        assert kind.hold.asks in {"point", "distance", *HOLDS}
+        assert kind.hold.asks in {"point", "distance", "curve", *HOLDS}
     assert {name for row in (*TURNS.values(), *HOLDS.values()) for name in row} <= set(SYMBOLS)
     for draw in LINKS.values():
         for length in (20.0, 300.0):

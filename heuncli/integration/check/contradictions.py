@@ -24,6 +24,7 @@ from heuncli.integration.run.kernel_loop import REACHED, KernelLoop, Start
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import just_after, just_before
 from heuncli.integration.trajectory import Trajectory
+from heuncli.mechanism.model import Mechanism
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.tree.islands import loop_of
@@ -141,7 +142,7 @@ def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
     drives = drives_of(layout, next(island for island in layout.islands if worst in island.rows))
     owner = layout.mechanism.owner(layout.rows[worst])
     at = f"at t = {bad:.9g} s: the closed chains cannot be held together beyond this instant"
-    message = f"{at}, in the loop at {owner}"
+    message = f"{at}, in the loop at {told_as(layout.mechanism, layout.rows[worst])}"
     if not drives:
         hint = "the mechanism locks or reaches the end of its range there"
     elif len(drives) == 1:
@@ -150,6 +151,16 @@ def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
         names = f"{', '.join(drives[:-1])} and {drives[-1]}"
         hint = f"the drives {names} ask there for what does not go together, or for more than the loop can do"
     return Problem("closure-lost", message, hint=hint, about=owner)
+
+
+def told_as(mechanism: Mechanism, owner: int) -> str:
+    """What a closure row belongs to, in words: "joint D (pin)"."""
+    count = len(mechanism.joints)
+    if owner < count:
+        joint = mechanism.joints[owner]
+        return f"joint {joint.name} ({joint.kind})"
+    coupling = mechanism.couplings[owner - count]
+    return f"coupling {coupling.name} ({coupling.given.type})"
 
 
 def drives_of(layout: Layout, island: Island) -> list[str]:

@@ -17,7 +17,8 @@ def turning(mechanism: Mechanism) -> list[tuple[BushingLoad, int]]:
     return [
         (load, rows.start + 1)
         for load, rows in mechanism.load_rows()
-        if isinstance(load, BushingLoad) and (load.turn.stiffness.any() or any(e.constant != 0.0 for e in load.turn.given))
+        if isinstance(load, BushingLoad)
+        and (load.turn.stiffness.any() or any(e.constant != 0.0 for e in load.turn.given))
     ]
 
 

@@ -60,7 +60,7 @@ def stands(a: tuple[float, float, float], b: tuple[float, float, float], along: 
     size = math.hypot(*a) * math.hypot(*b)
     dot = sum(x * y for x, y in zip(a, b, strict=True))
     cross = math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-    return (cross if along else abs(dot)) <= tolerances.ALONG_AXIS * size
+    return (cross if along else abs(dot)) <= tolerances.TYPED_AXES * size
 
 
 @rule("cam-contact")

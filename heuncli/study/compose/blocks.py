@@ -85,7 +85,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "sections" in wanted:
         shown["sections"] = sections(recovery, SHARES in wanted)
     if "forces" in wanted:
-        shown["forces"] = forces(recovery.loads, states)
+        shown["forces"] = forces(recovery.loads, states, {own.name for own in mechanism.couplings})
     return shown
 
 
@@ -178,10 +178,12 @@ def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> Forc
     return {"shift": shift, "turn": turn, "force": force, "moment": moment}
 
 
-def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
-    """Values, lengths, rates and powers of the applied loads."""
+def forces(loads: Sequence[AppliedLoad], states: BodyStates, coupled: Set[str] = frozenset()) -> dict[str, ForceBlock]:
+    """Values, lengths, rates and powers of the applied loads; coupled: what couplings apply, as pretension, they tell."""
     block: dict[str, ForceBlock] = {}
     for applied in loads:
+        if applied.load.name in coupled:
+            continue
         own: ForceBlock = {"value": applied.value}
         if isinstance(applied.load, PairLoad):
             own["length"] = applied.length

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 
 from heuncli.errors import LimitError, Problem
 from heuncli.integration.run.step_records import KEPT
+from heuncli.mechanism.model import BushingLoad
 from heuncli.records import record
 from heuncli.response import answer_kinds
 from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
@@ -141,6 +142,8 @@ def count(row: Quantity, setup: Setup) -> int:
         "FORCE": len(mechanism.loads),
         "CAUSE": len(mechanism.loads) + BESIDE_LOADS,
     }
+    if row.meaning.startswith("of a bushing"):
+        names["FORCE"] = sum(isinstance(load, BushingLoad) for load in mechanism.loads)
     whole = 1
     for axis in row.shape:
         whole *= axis.size or 1
