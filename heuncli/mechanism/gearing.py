@@ -14,6 +14,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.mechanism.couplings import Coordinate, CoupledRow, CouplingPart
 from heuncli.mechanism.model import GROUND, Body, Joint
@@ -21,7 +22,6 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross
 from heuncli.spec import couplings as c
-from heuncli.tolerances import TYPED_AXES, TYPED_POINT
 
 MISFIT = "gear-axes"
 
@@ -180,7 +180,11 @@ def coaxial(
     D, same = point - own.point, float(own.axis @ axis)
     off = D - (D @ own.axis) * own.axis
     size = max(float(np.max(np.abs(point))), float(np.max(np.abs(own.point))), 1e-30)
-    if _length(cross(own.axis, axis)) > TYPED_AXES or float(np.max(np.abs(off))) > TYPED_POINT * size or not own.turns:
+    if (
+        _length(cross(own.axis, axis)) > tolerances.TYPED_AXES
+        or float(np.max(np.abs(off))) > tolerances.TYPED_POINT * size
+        or not own.turns
+    ):
         return None
     at, along = line_on(joints[arm], bodies, carrier)
     same = math.copysign(1.0, same)
@@ -203,7 +207,7 @@ def mesh_of(given: c.Gear, carrier: int, first: GearMember, second: GearMember, 
         raise Finding(MISFIT, "neither ratio nor teeth nor the pitch point is given", "give one of ratio, teeth, at")
     if first.turns and second.turns:
         n = cross(first.axis, second.axis)
-        if _length(n) <= TYPED_AXES:
+        if _length(n) <= tolerances.TYPED_AXES:
             return _parallel(given, carrier, first, second, at)
         return _bevel(given, carrier, first, second, at)
     return _rack(given, carrier, first, second, at)
@@ -227,13 +231,13 @@ def _parallel(given: c.Gear, carrier: int, first: GearMember, second: GearMember
     d = second.arm(first.point) * -1.0
     distance = _length(d)
     size = max(float(np.max(np.abs(first.point))), float(np.max(np.abs(second.point))))
-    if distance <= TYPED_POINT * size:
+    if distance <= tolerances.TYPED_POINT * size:
         raise Finding(MISFIT, "both gears turn about the same axis", "gears on one axis are tied by type: ratio")
     if given.ratio is None and given.teeth is None:
         assert at is not None
         return _from_point(carrier, first, second, at, first.axis)
     i = _ratio(given, first, second, -same) * same
-    if abs(i - 1.0) < TYPED_AXES:
+    if abs(i - 1.0) < tolerances.TYPED_AXES:
         raise Finding(MISFIT, "of a ratio of 1 in the same sense there is no pitch point", "take type: belt or ratio")
     P = first.point + d / (1.0 - i)
     if at is not None:
@@ -256,7 +260,7 @@ def _bevel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, a
     i = _ratio(given, first, second, external)
     g = _unit(i * first.axis - second.axis)
     along = float(g @ first.axis)
-    if at is None and (sides[0] == 0.0 or abs(along) < TYPED_AXES):
+    if at is None and (sides[0] == 0.0 or abs(along) < tolerances.TYPED_AXES):
         raise Finding(MISFIT, "where on the pitch cone the teeth meet is not known", "give the pitch point: at")
     if at is None:
         P = apex + sides[0] / along * g
@@ -269,7 +273,7 @@ def _bevel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, a
 
 def _rack(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> GearMesh:
     wheel, rack = (first, second) if first.turns else (second, first)
-    if abs(float(wheel.axis @ rack.axis)) > TYPED_AXES:
+    if abs(float(wheel.axis @ rack.axis)) > tolerances.TYPED_AXES:
         raise Finding(MISFIT, "the rack does not slide at right angles to the axis of its wheel", "correct the axes")
     if given.teeth is not None:
         raise Finding(MISFIT, "teeth tell no ratio of a rack", "give the ratio, in rad/m, or the pitch point: at")
@@ -289,14 +293,14 @@ def _from_point(carrier: int, first: GearMember, second: GearMember, P: Array, w
     one, other = first.way(P), second.way(P)
     sizes = _length(one) * _length(other)
     across = cross(one, other)
-    if sizes == 0.0 or _length(across) > TYPED_POINT * sizes:
+    if sizes == 0.0 or _length(across) > tolerances.TYPED_POINT * sizes:
         raise Finding(MISFIT, "at the pitch point the two gears do not move in the same direction",
                       "it lies in the plane of both axes, on the line through both centres")  # fmt: skip
     return GearMesh(carrier, first, second, P, w)
 
 
 def _require_at(P: Array, off: Array, size: float) -> None:
-    if _length(off) > TYPED_POINT * size:
+    if _length(off) > tolerances.TYPED_POINT * size:
         where = ", ".join(f"{x:.6g}" for x in P)
         raise Finding(MISFIT, f"the pitch point given is {_length(off):.3g} m from where axes and ratio "
                       f"put it, at ({where})", "leave out at, or the ratio; or move an axis")  # fmt: skip
@@ -307,7 +311,7 @@ def _meeting(first: GearMember, second: GearMember) -> Array:
     n = cross(first.axis, second.axis)
     D = second.point - first.point
     gap, size = abs(float(n @ D)) / _length(n), _length(D)
-    if gap > TYPED_POINT * size:
+    if gap > tolerances.TYPED_POINT * size:
         raise Finding(MISFIT, f"the axes are neither parallel nor do they meet: they pass at {gap:.3g} m",
                       "tie gears with crossed axes, as worms, by type: ratio, without their tooth force")  # fmt: skip
     return np.asarray(first.point + float(cross(D, second.axis) @ n) / float(n @ n) * first.axis)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.expressions.programs import Expression
 from heuncli.mechanism.couplings import Coordinate, CoupledRow
@@ -19,7 +20,6 @@ from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross
 from heuncli.spec import couplings as c
-from heuncli.tolerances import TYPED_AXES
 
 
 @record
@@ -65,7 +65,7 @@ def strands(given: c.Belt, first: GearMember, second: GearMember) -> tuple[BeltS
     """The strand that comes tight when the first pulley drives on, and the other one. Raises Finding."""
     n = first.axis
     skew = cross(n, second.axis)
-    if not (first.turns and second.turns) or float(skew @ skew) > TYPED_AXES**2:
+    if not (first.turns and second.turns) or float(skew @ skew) > tolerances.TYPED_AXES**2:
         raise Finding(
             "belt-axes", "the two pulleys do not turn about parallel axes", "a belt runs over two pins or cylinders"
         )

@@ -10,13 +10,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from heuncli import tolerances
 from heuncli.errors import Finding
 from heuncli.mechanism.couplings import Coordinate, CoupledRow
 from heuncli.mechanism.gearing import members, mesh_parts
 from heuncli.mechanism.model import Body, Joint
 from heuncli.shapes.rotations import cross
 from heuncli.spec import couplings as c
-from heuncli.tolerances import TYPED_AXES
 
 
 def screw_row(given: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]) -> CoupledRow:
@@ -38,7 +38,7 @@ def screw_row(given: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], o
                       "name a pin and a slide; two that turn are a gear, two that slide a ratio")  # fmt: skip
     spindle, nut = (first, second) if first.turns else (second, first)
     skew = cross(spindle.axis, nut.axis)
-    if float(skew @ skew) > TYPED_AXES**2:
+    if float(skew @ skew) > tolerances.TYPED_AXES**2:
         raise Finding("screw-joints", "the nut does not slide along the axis of the spindle", "correct the axes")
     counted = [Coordinate(x.joint, x.quantity, x.ratio * nut.sign) for x in nut.coordinates]
     counted += [Coordinate(x.joint, x.quantity, -by * x.ratio * spindle.sign) for x in spindle.coordinates]

@@ -26,6 +26,7 @@ ground: {points: {O: [0, 0, 0]}}
 bodies:
   a: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [1, 0, 0], q: [-1, 0, 0]}}
   b: {mass: 1, center: [2, 0, 0], inertia: [1, 1, 1], points: {p: [1, 0, 0]}}
+tables: {line: {x: [0, 1], y: [0, 1], interpolation: cubic}}
 joints:
   of_it: {type: KIND, from: END, to: b.p KEYS}
 """
@@ -67,7 +68,7 @@ def test_every_kind_of_joint_has_its_symbol(kind: str, end: str) -> None:
     row = TYPES[kind]
     keys = f", {row.axis_key}: [0, 0, 1]" if row.axis_key else ""
     keys += ", to_axis: [1, 0, 0]" if row.to_axis == "required" else ""
-    keys += ", x: {x: [0, 1], y: [0, 1]}" if kind == "curve" else ""
+    keys += ", x: line" if kind == "curve" else ""
     text = KINDS.replace("KIND", kind).replace("END", end).replace(" KEYS", keys)
     figures = [as_assembled(load("kinds.yaml", text), view) for view in ("x", "z", "30,20")]
     for figure in figures:
