@@ -129,7 +129,7 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
 
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
     rows = {name: recovered.rows[name] for name in ("f", "m", "closed")} | {"multiplier": by_cause(columns.multipliers)}
-    parts = {name: recovered.parts[name] for name in ("f", "m", "Q")}
+    parts = {name: recovered.parts[name] for name in ("f", "m", "Q", "on_a", "on_b")}
     return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, parts)
 
 

@@ -13,6 +13,7 @@ from heuncli.results import Results
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic
+from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
 from tests.shared.redundant_supports import door
 from tests.shared.scenes import moving, near, solved
@@ -446,3 +447,13 @@ def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
     shares = found.foundation["shares"]
     assert not shares["drives"]["force"].any()
     near(sum(share["force"] for share in shares.values()), found.foundation["force"], 100.0)
+
+
+@pytest.mark.parametrize("name", ["belt_drive", "screw_press"])
+def test_shares_of_couplings_add_up(name: str) -> None:
+    found = solved((SPECS / f"{name}.yaml").read_text(encoding="utf-8"), wanted=WANTED | {"couplings"})
+    for coupling in found.couplings.values():
+        parts = [share["force"] for share in coupling["shares"].values()]
+        largest = np.max(np.abs(parts))
+        assert largest > 1.0
+        np.testing.assert_allclose(np.sum(parts, axis=0), coupling["force"], rtol=0, atol=1e-9 * largest)
