@@ -100,7 +100,7 @@ def settled(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> 
 
 
 @record
-class Measured:
+class MeasuredState:
     """How bodies (tree order, tables.BODY_ANSWER; of them R, r, omega, v) and closure rows stand and move at a state.
 
     gaps, rates (rows,): as the kernel has them, less what is prescribed.
@@ -118,12 +118,12 @@ def unsettled(layout: Layout) -> workspace.Workspace:
     return workspace.Workspace(layout.tables, layout.indices, own, numbers_of(layout))
 
 
-def measured(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> Measured:
+def measured(at: workspace.Workspace, layout: Layout, t: float, state: Array) -> MeasuredState:
     """What is measured at a state as it is, wherever its closures are open."""
     told = np.empty((1, len(layout.place)), BODY_ANSWER)
     gaps, rates = np.zeros(len(layout.rows)), np.zeros(len(layout.rows))
     at.measured(t, np.ascontiguousarray(state, dtype=float), as_numbers(told).reshape(-1), gaps, rates)
-    return Measured(told[0], gaps, rates)
+    return MeasuredState(told[0], gaps, rates)
 
 
 @record

@@ -14,11 +14,11 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.assembly.row_reduction import solve
-from heuncli.coupled_start.freedoms import Freedoms, Motion
+from heuncli.coupled_start.freedoms import FreedomMotion, Freedoms
 from heuncli.coupled_start.held import Rows, held_poses, held_rates
 from heuncli.mechanism.model import Assembly
 from heuncli.records import record
-from heuncli.response import Measured
+from heuncli.response import MeasuredState
 from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import to_vector
 from heuncli.tree.prepare import PreparedScene
@@ -53,7 +53,7 @@ class CoupledFit:
         weight = scene.layout.tables["closures"]["weight"][: len(scene.layout.rows)]
         self.weight = weight / self.size  # of gaps, and of their rates
 
-    def now(self) -> tuple[Measured, Assembly]:
+    def now(self) -> tuple[MeasuredState, Assembly]:
         """What is measured at the state, and the start that it is."""
         told = self.freedoms.measured(self.state)
         return told, self.freedoms.assembly(told, self.scene.start)
@@ -124,7 +124,7 @@ class CoupledFit:
                 self.state = before
                 return
 
-    def _step(self, told: Measured, now: Assembly, change: Array | None) -> Array:
+    def _step(self, told: MeasuredState, now: Assembly, change: Array | None) -> Array:
         motion = self.freedoms.motion(self.state)
         held = list(held_poses(self.scene, now, motion))
         hard = _joined([self._rows(motion, told.gaps, self.asked.joints), *held])
@@ -132,11 +132,11 @@ class CoupledFit:
         step, turn = _least(self._spread(motion, now), hard, soft, change)
         return step * min(1.0, TURN / turn) if turn > 0.0 else step
 
-    def _gap(self, told: Measured, now: Assembly) -> float:
+    def _gap(self, told: MeasuredState, now: Assembly) -> float:
         """The largest gap of all that is asked and held, by the size, or rad."""
         rows = np.concatenate([self.asked.joints, self.asked.poses])
         still = np.zeros((len(now.position), 3, 0))
-        nothing = Motion(still, still, np.zeros((len(told.gaps), 0)), now.position)
+        nothing = FreedomMotion(still, still, np.zeros((len(told.gaps), 0)), now.position)
         held = [lack for _, lack in held_poses(self.scene, now, nothing)]
         return float(np.max(np.abs(np.concatenate([told.gaps[rows] * self.weight[rows], *held])), initial=0.0))
 
@@ -152,14 +152,14 @@ class CoupledFit:
         turns, shifts = np.split(self._change(now), 2)
         return round(float(turns @ turns), 12), float(shifts @ shifts)
 
-    def _spread(self, motion: Motion, now: Assembly) -> Array:
+    def _spread(self, motion: FreedomMotion, now: Assembly) -> Array:
         """What the freedoms turn these bodies by, and shift their centres by (by the size), (6 m, n)."""
         n, turns = len(self.freedoms.answers), motion.turns[self.bodies]
         arms = np.einsum("nij,nj->ni", now.rotation[self.bodies], self.arms)
         centres = motion.v[self.bodies] + np.cross(turns, arms[:, :, None], axis=1)
         return np.concatenate([turns.reshape(3 * len(turns), n), centres.reshape(3 * len(turns), n) / self.size])
 
-    def _rows(self, motion: Motion, lack: Array, which: Indices) -> Rows:
+    def _rows(self, motion: FreedomMotion, lack: Array, which: Indices) -> Rows:
         weight = self.weight[which]
         return motion.rows[which] * weight[:, None], -lack[which] * weight
 

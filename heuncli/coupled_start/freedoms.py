@@ -12,14 +12,14 @@ import numpy as np
 
 from heuncli.mechanism.model import Assembly
 from heuncli.records import record
-from heuncli.response import Measured, measured, unsettled
+from heuncli.response import MeasuredState, measured, unsettled
 from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import cross_rows, quaternion_from_vector, quaternion_product
 from heuncli.tree.layout import Layout, places_of_rates
 
 
 @record
-class Motion:
+class FreedomMotion:
     """What each of n freedoms alone moves at rate 1, world axes: turns (n_b, 3, n), of the bodies, in the spec's order.
 
     v (n_b, 3, n): of their origins; rows (rows, n): rates of the gaps; x (n_b, 3): where the origins are.
@@ -52,25 +52,25 @@ class Freedoms:
         rate_at = places_of_rates(layout).astype(np.intp)
         own = [n for i in sorted(bodies) for n in _answers(layout, i) if rate_at[n] >= 0]
         self.answers: Indices = np.array(own, dtype=int)
-        self.rate_at: Indices = rate_at[self.answers]
-        self.all_rates: Indices = rate_at[rate_at >= 0]
+        self.rate_at: Indices = np.array(rate_at[self.answers], dtype=np.intp)
+        self.all_rates: Indices = np.array(rate_at[rate_at >= 0], dtype=np.intp)
 
-    def measured(self, state: Array) -> Measured:
+    def measured(self, state: Array) -> MeasuredState:
         """How all stands and moves at a state."""
         return measured(self.workspace, self.layout, self.t, state)
 
-    def start_of(self, told: Measured) -> tuple[Array, Array, Array, Array]:
+    def start_of(self, told: MeasuredState) -> tuple[Array, Array, Array, Array]:
         """Position and velocity of the bodies' origins, attitude, angular velocity, in the spec's order."""
         own = told.bodies[self.layout.order]
         arm = np.einsum("nij,nj->ni", own["R"], self.layout.beside["origin"])
         return own["r"] + arm, own["v"] + cross_rows(own["omega"], arm), own["R"].copy(), own["omega"].copy()
 
-    def assembly(self, told: Measured, start: Assembly) -> Assembly:
+    def assembly(self, told: MeasuredState, start: Assembly) -> Assembly:
         """The start as it is measured."""
         x, v, R, omega = self.start_of(told)
         return Assembly(x, R, v, omega, start.chosen, start.gap, start.moved)
 
-    def motion(self, state: Array) -> Motion:
+    def motion(self, state: Array) -> FreedomMotion:
         """What each freedom moves at a state."""
         still = np.array(state)
         still[self.all_rates] = 0.0
@@ -82,7 +82,7 @@ class Freedoms:
             _, v1, _, omega1 = self.start_of(told := self.measured(still))
             still[at] = 0.0
             turns[:, :, k], v[:, :, k], rows[:, k] = omega1 - omega0, v1 - v0, told.rates - rest.rates
-        return Motion(turns, v, rows, x)
+        return FreedomMotion(turns, v, rows, x)
 
     def moved(self, state: Array, step: Array) -> Array:
         """The state with coordinates moved by a step (n,); turns of a ball about the world's axes."""

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.coupled_start.freedoms import Motion
+from heuncli.coupled_start.freedoms import FreedomMotion
 from heuncli.mechanism.model import Assembly, Directed, Joint
 from heuncli.results import Array
 from heuncli.shapes.rotations import to_vector
@@ -21,7 +21,7 @@ from heuncli.tree.starts import axial_angle, pose
 Rows = tuple[Array, Array]  # (k, n) and what they lack (k,)
 
 
-def held_poses(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[Rows]:
+def held_poses(scene: PreparedScene, now: Assembly, motion: FreedomMotion) -> Iterator[Rows]:
     """What holds poses; now: where the bodies have come to from the scene's start."""
     size, start = scene.layout.size, scene.start
     for i, body in enumerate(scene.mechanism.bodies):
@@ -37,7 +37,7 @@ def held_poses(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[
             yield sliding, np.array([_travel(joint, start) - _travel(joint, now)]) / size
 
 
-def held_rates(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[Rows]:
+def held_rates(scene: PreparedScene, now: Assembly, motion: FreedomMotion) -> Iterator[Rows]:
     """What holds rates; now: as all moves."""
     size = scene.layout.size
     for i, body in enumerate(scene.mechanism.bodies):
@@ -57,7 +57,7 @@ def held_rates(scene: PreparedScene, now: Assembly, motion: Motion) -> Iterator[
             yield sliding, np.array([joint.speed - _rates(joint, now)[1]]) / size
 
 
-def _along(joint: Joint, now: Assembly, motion: Motion, size: float) -> Rows:
+def _along(joint: Joint, now: Assembly, motion: FreedomMotion, size: float) -> Rows:
     """How the freedoms turn a joint about its axis, and shift it along (by the size), (1, n) each."""
     xb, Rb, _, _ = pose(now, joint.b)
     n, Q = pose(now, joint.a)[1] @ joint.axis, xb + Rb @ joint.q

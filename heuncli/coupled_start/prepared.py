@@ -12,5 +12,10 @@ def prepare_coupled(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW
     if not mechanism.couplings:
         return prepare(mechanism, t0, stages)
     from heuncli.coupled_start.start import asked_of, fitted  # few scenes have couplings
+    from heuncli.coupled_start.upright import require_upright
 
-    return prepare(mechanism, t0, stages, lambda scene: fitted(scene, t0, asked_of(scene)))
+    def with_couplings(scene: PreparedScene) -> PreparedScene:
+        require_upright(mechanism, scene.start)
+        return fitted(scene, t0, asked_of(scene))
+
+    return prepare(mechanism, t0, stages, with_couplings)

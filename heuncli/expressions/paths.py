@@ -17,7 +17,8 @@ from heuncli.records import record, replace
 from heuncli.results import Array
 
 PERIODIC = 2  # a table's kind (expressions/programs.py)
-LOOKS = 16  # places in a piece at which a path is looked at
+LOOKS = 8  # places in a piece at which a path is looked at
+AT_ONCE = 2**18  # distances that are looked at together
 NEWTON = 32  # steps to the nearest place
 TRIED = 4  # of the places looked at, those from which the nearest is sought
 
@@ -66,17 +67,28 @@ class Path:
         By Newton's method on (r - x) . r' = 0 from each of the nearest places looked at, for one of another part of the
         path may lie nearer than those about the place that is sought.
         """
+        flat = np.reshape(points, (-1, 3))
         s = self.looked_at
+        r = self.at(s)[0]
+        room = max(1, AT_ONCE // len(s))
+        found = [self._nearest(flat[i : i + room], s, r) for i in range(0, len(flat), room)]
+        return np.concatenate(found).reshape(points.shape[:-1]) if found else np.zeros(points.shape[:-1])
+
+    def _nearest(self, points: Array, s: Array, r: Array) -> Array:
+        """The same of a few points (k, 3); s, r: the places looked at."""
         low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])
         if self.period:
             low[0], high[-1] = s[0] - (s[-1] - s[-2]), s[-1] + (s[1] - s[0])
-        away = np.sum(np.square(points[..., None, :] - self.at(s)[0]), axis=-1)
-        beside = np.concatenate([away[..., :1] + 1.0, away, away[..., -1:] + 1.0], axis=-1)
-        least = (away <= beside[..., :-2]) & (away <= beside[..., 2:])
-        begun = np.argsort(np.where(least, away, np.inf), axis=-1)[..., :TRIED]
-        found = self._descended(points[..., None, :], s[begun], low[begun], high[begun])
-        left = np.sum(np.square(points[..., None, :] - self.at(found)[0]), axis=-1)
-        return np.take_along_axis(found, np.argmin(left, axis=-1)[..., None], axis=-1)[..., 0]
+        away = np.sum(r * r, axis=1) - 2.0 * (points @ r.T)  # but for the point's own square
+        falls = away[:, 1:] <= away[:, :-1]
+        least = np.ones(away.shape, dtype=bool)
+        least[:, 1:] &= falls
+        least[:, :-1] &= ~falls | (away[:, 1:] == away[:, :-1])
+        away[~least] = np.inf
+        begun = np.argpartition(away, min(TRIED, len(s)) - 1, axis=1)[:, :TRIED]
+        found = self._descended(points[:, None, :], s[begun], low[begun], high[begun])
+        left = np.sum(np.square(points[:, None, :] - self.at(found)[0]), axis=-1)
+        return np.asarray(np.take_along_axis(found, np.argmin(left, axis=1)[:, None], axis=1)[:, 0])
 
     def _descended(self, points: Array, begun: Array, low: Array, high: Array) -> Array:
         """Where Newton's method leads from parameters, held between others."""
@@ -121,7 +133,7 @@ def path_of(parts: Sequence[TableFunction | float]) -> Path:
 
 def knots_of(table: TableFunction) -> Array:
     """The points of the parameter at which a table's pieces begin, and its end."""
-    return np.frombuffer(table.numbers)[1 : table.pieces + 2]
+    return np.asarray(np.frombuffer(table.numbers)[1 : table.pieces + 2])
 
 
 def repeated(table: TableFunction, first: float, last: float) -> Iterator[float]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from heuncli.integration.integrated_scene import IntegratedScene
 from heuncli.records import record
 from heuncli.results import Block
+from heuncli.tree.held_speeds import holds_speed
 
 BY_DRIVES = "nothing is integrated: the drives leave no freedom, every instant follows from them and the closed chains"
 BY_JOINTS = "nothing is integrated: the joints leave no freedom, nothing can move"
 SINGULAR = "integrated, though the drives leave no freedom: on the way lies a singular pose, as a dead centre is"
 CONTACTS = "integrated, though nothing is free: a rope or a stop may open and close"
+ROLLS = "integrated, though nothing is free: what rolls has its speeds determined at each instant, and no pose"
 
 
 @record
@@ -42,6 +44,8 @@ def determined(moving: IntegratedScene) -> Determined:
         return NOT_DETERMINED
     if len(layout.tables["contacts"]):
         return Determined(False, (CONTACTS,))
+    if holds_speed(layout).any():
+        return Determined(False, (ROLLS,))
     return Determined(True, (BY_DRIVES if layout.driven else BY_JOINTS,))
 
 

@@ -21,8 +21,8 @@ if not cython.compiled:
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.paths import path_point
     from heuncli.kernel.scene import (
-        Cam,
         CamContact,
+        CamStance,
         Carried,
         Closure,
         FreedomTangent,
@@ -40,7 +40,7 @@ def lift_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> PathP
     return path_point(scene, row.lift, row.pieces, row.period, scene.freedoms[row.freedom].q)
 
 
-def cam_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], slope: cython.double) -> Cam:
+def cam_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], slope: cython.double) -> CamStance:
     """Where the parts of a cam are: O and e the disc's axis, C the follower's point, P and g its axis or guide."""
     O: Vec3 = place_of(scene, row.c, row.p)
     C: Vec3 = place_of(scene, row.b, row.q)
@@ -48,10 +48,10 @@ def cam_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], slope: cy
     g: Vec3 = direction_of(scene, row.c, row.g)
     w: Vec3 = cross(g, sub(C, place_of(scene, row.c, row.pivot))) if row.swings else g
     h: Vec3 = direction_of(scene, row.b, row.h)
-    return Cam(e, g, sub(C, O), w, h, slope)
+    return CamStance(e, g, sub(C, O), w, h, slope)
 
 
-def contact_of(row: cython.pointer[Closure], cam: Cam) -> CamContact:
+def contact_of(row: cython.pointer[Closure], cam: CamStance) -> CamContact:
     """The place of contact from the follower's point on, and the load there, before it is divided by f . w_b."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     n: Vec3
@@ -73,7 +73,7 @@ def contact_of(row: cython.pointer[Closure], cam: Cam) -> CamContact:
 def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """gamma = -L'' phidot^2 - f . (h_b - h_a), h what of the acceleration at Q against the carrier velocities make."""
     lift: PathPoint = lift_of(scene, row)
-    cam: Cam = cam_of(scene, row, lift.slope.x)
+    cam: CamStance = cam_of(scene, row, lift.slope.x)
     there: CamContact = contact_of(row, cam)
     u: cython.double = scene.freedoms[row.freedom].u
     u_b: cython.double = scene.freedoms[row.freedom_b].u
@@ -106,14 +106,14 @@ def sliding(scene: cython.pointer[Scene], body: cython.int, c: cython.int, speed
 def cam_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:
     """What a cam's row changes by: its acceleration is that of the coordinates, x_b'' - L' phi'' - L'' phi'^2."""
     lift: PathPoint = lift_of(scene, row)
-    cam: Cam = cam_of(scene, row, lift.slope.x)
+    cam: CamStance = cam_of(scene, row, lift.slope.x)
     there: CamContact = contact_of(row, cam)
     a: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[row.freedom])
     b: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[row.freedom_b])
     u: cython.double = scene.freedoms[row.freedom].u
     rate: cython.double = b.u - lift.slope.x * a.u - lift.bend.x * a.q * u
     bent: cython.double = lift.bend.x * (a.q * a.udot + 2.0 * u * a.u) + lift.twist.x * a.q * u * u
-    d: Cam = cam_moved(scene, row, cam, lift.bend.x * a.q)
+    d: CamStance = cam_moved(scene, row, cam, lift.bend.x * a.q)
     turned: CamContact = contact_along(row, cam, there, d)
     w: Vec3 = cam.w
     dw: Vec3 = d.w
@@ -127,7 +127,9 @@ def cam_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Row
     return RowTangent(Q, f, Vec3(0.0, 0.0, 0.0), rate, -bent)
 
 
-def cam_moved(scene: cython.pointer[Scene], row: cython.pointer[Closure], cam: Cam, slope: cython.double) -> Cam:
+def cam_moved(
+    scene: cython.pointer[Scene], row: cython.pointer[Closure], cam: CamStance, slope: cython.double
+) -> CamStance:
     """What of a cam changes by as its bodies move, and its slope by `slope`."""
     C: Vec3 = point_along(scene, row.b, row.q).x
     g: Vec3 = swung(scene, row.c, cam.g)
@@ -136,10 +138,10 @@ def cam_moved(scene: cython.pointer[Scene], row: cython.pointer[Closure], cam: C
         arm: Vec3 = sub(place_of(scene, row.b, row.q), place_of(scene, row.c, row.pivot))
         w = add_cross(cross(g, arm), cam.g, sub(C, point_along(scene, row.c, row.pivot).x))
     h: Vec3 = swung(scene, row.b, cam.h)
-    return Cam(swung(scene, row.c, cam.e), g, sub(C, point_along(scene, row.c, row.p).x), w, h, slope)
+    return CamStance(swung(scene, row.c, cam.e), g, sub(C, point_along(scene, row.c, row.p).x), w, h, slope)
 
 
-def contact_along(row: cython.pointer[Closure], cam: Cam, there: CamContact, d: Cam) -> CamContact:
+def contact_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, d: CamStance) -> CamContact:
     """What place and normal change by."""
     if row.faced:
         return face_along(row, cam, there, d)
@@ -155,7 +157,7 @@ def contact_along(row: cython.pointer[Closure], cam: Cam, there: CamContact, d: 
     return CamContact(scaled(-outward, add_scaled(n, -along, there.n)), n)
 
 
-def face_along(row: cython.pointer[Closure], cam: Cam, there: CamContact, d: Cam) -> CamContact:
+def face_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, d: CamStance) -> CamContact:
     """The same of a flat face: of s k, k = e x h, s = top / bottom."""
     k: Vec3 = cross(cam.e, cam.h)
     dk: Vec3 = add_cross(cross(d.e, cam.h), cam.e, d.h)

@@ -545,7 +545,7 @@ class WheelTangent(Value):
     e: VectorRateTangent
 
 
-class Cam(Value):
+class CamStance(Value):
     """A cam and its follower in the world; or what these change by."""
 
     e: Vec3  # the disc's axis

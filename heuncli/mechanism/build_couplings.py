@@ -27,8 +27,8 @@ SIZE = 0.0  # weight of gaps that are angles: the scene's size
 def couplings_of(
     spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
 ) -> tuple[Coupling, ...]:
-    """All couplings, in the order of the spec; number: of the joints by their names. Raises SpecError with all misfits."""
-    drawn = Drawing(spec, joints, bodies, number)
+    """All couplings, in the order of the spec; number: of joints by their names. Raises SpecError with all misfits."""
+    drawn = CoupledDrawing(spec, joints, bodies, number)
     found, problems = [], []
     for name, given in spec.couplings.items():
         try:
@@ -45,7 +45,7 @@ def pretensions(
     spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
 ) -> tuple[PairLoad, ...]:
     """What belts pull their pulleys together with, by the belts' names."""
-    drawn = Drawing(spec, joints, bodies, number)
+    drawn = CoupledDrawing(spec, joints, bodies, number)
     belts = {name: own for name, own in spec.couplings.items() if own.type == "belt" and own.pretension > 0.0}
     return tuple(
         pretension_of(name, own, joints, bodies, (drawn.of(own.terms)[0], drawn.of(own.terms)[1]))
@@ -54,7 +54,7 @@ def pretensions(
 
 
 @record
-class Drawing:
+class CoupledDrawing:
     """The joints and bodies that couplings look at; number: of the joints by their names."""
 
     spec: Spec
@@ -72,40 +72,40 @@ class Drawing:
         return (names.index(end.body) if end.body in names else GROUND), np.array(end.point)
 
 
-def ratio(given: c.Ratio, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def ratio(given: c.Ratio, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """The sum of coordinates, each times its factor: a couple about each axis, a force along each guide."""
     parts = tuple(of_coordinate(drawn, x, x.factor) for x in given.terms)
     turning = all(x.quantity == "angle" for x in given.terms)
     return (CoupledRow(parts, given.is_, SIZE if turning else 1.0),)
 
 
-def differential(given: c.Differential, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def differential(given: c.Differential, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """first - ratio second - (1 - ratio) carrier stays what it is."""
     factors = (1.0, -given.ratio, given.ratio - 1.0)
     parts = tuple(of_coordinate(drawn, x, factor) for x, factor in zip(given.terms, factors, strict=True))
     return (CoupledRow(parts, None, SIZE),)
 
 
-def gear(given: c.Gear, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def gear(given: c.Gear, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """The tooth force at the pitch point."""
     one, other = drawn.of(given.terms)
     at = None if given.at is None else drawn.place(given.at)
     return (gear_row(given, drawn.joints, drawn.bodies, (one, other), at),)
 
 
-def screw(given: c.Screw, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def screw(given: c.Screw, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """The thrust along the axis, and the torque about it."""
     one, other = drawn.of(given.terms)
     return (screw_row(given, drawn.joints, drawn.bodies, (one, other)),)
 
 
-def belt(given: c.Belt, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def belt(given: c.Belt, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """The pulls of both strands."""
     one, other = drawn.of(given.terms)
     return (belt_row(given, drawn.joints, drawn.bodies, (one, other)),)
 
 
-def of_coordinate(drawn: Drawing, term: c.Term, factor: float) -> CouplingPart:
+def of_coordinate(drawn: CoupledDrawing, term: c.Term, factor: float) -> CouplingPart:
     """The condition on a joint's coordinate: of an angle its couple, of a travel its force."""
     k = drawn.number[term.joint]
     joint = drawn.joints[k]
@@ -117,10 +117,14 @@ def of_coordinate(drawn: Drawing, term: c.Term, factor: float) -> CouplingPart:
     )  # fmt: skip
 
 
-def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
-    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
+def cam(given: c.Cam, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
+    """A disc and its follower."""
     k, n = drawn.number[given.shaft], drawn.number[given.follower]
-    shaft, follower = drawn.joints[k], drawn.joints[n]
+    return cam_rows(given, k, drawn.joints[k], n, drawn.joints[n])
+
+
+def cam_rows(given: c.Cam, k: int, shaft: Joint, n: int, follower: Joint) -> tuple[CoupledRow, ...]:
+    """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
     swings = JOINTS[follower.kind].coordinates[0] == "angle"
     shape = CamShape(
         path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,
@@ -134,7 +138,7 @@ def cam(given: c.Cam, drawn: Drawing) -> tuple[CoupledRow, ...]:
     return (CoupledRow((part,), 0.0, SIZE if swings else 1.0, not given.both, given.restitution),)
 
 
-def wheel(given: c.RollingWheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def wheel(given: c.RollingWheel, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """A wheel on its plane."""
     (b, q), (a, p) = drawn.place(given.wheel), drawn.place(given.on)
     ends: WheelEnds = {"a": a, "b": b, "p": p, "q": q, "e": unit(given.normal)}
@@ -144,7 +148,7 @@ def wheel(given: c.RollingWheel, drawn: Drawing) -> tuple[CoupledRow, ...]:
     return disc_rows(ends, unit(given.axis), given.radius, ways)
 
 
-def at_start(given: c.Rope | c.ConstantVelocity, drawn: Drawing) -> tuple[CoupledRow, ...]:
+def at_start(given: c.Rope | c.ConstantVelocity, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """None yet: what they hold is found where the bodies stand (tree/couplings_at_start.py)."""
     return ()
 

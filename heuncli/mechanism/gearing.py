@@ -57,7 +57,7 @@ class GearMember:
 
 
 @record
-class Mesh:
+class GearMesh:
     """Two members that mesh: carrier; pitch point P; w along the common line of their pitch surfaces."""
 
     carrier: int
@@ -126,10 +126,10 @@ def members(joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
         return carrier, member(joints, bodies, of[0], carrier), member(joints, bodies, of[1], carrier)
     for arm, joint in enumerate(joints):
         for k, other in (of, of[::-1]):
-            base, held = _ends(joint, joints[k], joints[other])
-            if base is None or held is None or joint.kind != "pin":
+            ends = _ends(joint, joints[k], joints[other])
+            if ends is None or joint.kind != "pin":
                 continue
-            carrier = held
+            base, carrier = ends
             own = coaxial(joints, bodies, k, arm, base, carrier)
             if own is not None:
                 mate = member(joints, bodies, other, carrier)
@@ -140,11 +140,11 @@ def members(joints: Sequence[Joint], bodies: Sequence[Body], of: tuple[int, int]
     )  # fmt: skip
 
 
-def _ends(arm: Joint, beside: Joint, on: Joint) -> tuple[int | None, int | None]:
+def _ends(arm: Joint, beside: Joint, on: Joint) -> tuple[int, int] | None:
     """The body that an arm shares with the joint beside it, and the one with the joint that it carries."""
     base = {arm.a, arm.b} & {beside.a, beside.b}
     carrier = ({arm.a, arm.b} & {on.a, on.b}) - base
-    return (base.pop(), carrier.pop()) if len(base) == 1 and len(carrier) == 1 else (None, None)
+    return (base.pop(), carrier.pop()) if len(base) == 1 and len(carrier) == 1 else None
 
 
 def member(joints: Sequence[Joint], bodies: Sequence[Body], k: int, carrier: int) -> GearMember:
@@ -195,7 +195,7 @@ def coaxial(
 # Where they roll on each other
 
 
-def mesh_of(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> Mesh:
+def mesh_of(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> GearMesh:
     """The pitch point of two members. Raises Finding where axes, ratio and point contradict each other."""
     if not (first.turns or second.turns):
         raise Finding(MISFIT, "both joints slide: there is nothing that rolls", "for two travels take type: ratio")
@@ -222,7 +222,7 @@ def _ratio(given: c.Gear, first: GearMember, second: GearMember, external: float
     return found
 
 
-def _parallel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> Mesh:
+def _parallel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> GearMesh:
     same = math.copysign(1.0, float(first.axis @ second.axis))
     d = second.arm(first.point) * -1.0
     distance = _length(d)
@@ -240,10 +240,10 @@ def _parallel(given: c.Gear, carrier: int, first: GearMember, second: GearMember
         off = first.arm(at) - d / (1.0 - i)
         _require_at(P, off, distance)
         P = P + ((at - P) @ first.axis) * first.axis
-    return Mesh(carrier, first, second, P, first.axis)
+    return GearMesh(carrier, first, second, P, first.axis)
 
 
-def _bevel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> Mesh:
+def _bevel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> GearMesh:
     apex = _meeting(first, second)
     if given.ratio is None and given.teeth is None:
         assert at is not None
@@ -264,10 +264,10 @@ def _bevel(given: c.Gear, carrier: int, first: GearMember, second: GearMember, a
         D = at - apex
         _require_at(apex + (D @ g) * g, D - (D @ g) * g, _length(D))
         P = apex + (D @ g) * g
-    return Mesh(carrier, first, second, P, g)
+    return GearMesh(carrier, first, second, P, g)
 
 
-def _rack(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> Mesh:
+def _rack(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at: Array | None) -> GearMesh:
     wheel, rack = (first, second) if first.turns else (second, first)
     if abs(float(wheel.axis @ rack.axis)) > TYPED_AXES:
         raise Finding(MISFIT, "the rack does not slide at right angles to the axis of its wheel", "correct the axes")
@@ -281,10 +281,10 @@ def _rack(given: c.Gear, carrier: int, first: GearMember, second: GearMember, at
     if at is not None:
         _require_at(P, wheel.arm(at) - (P - wheel.point), _length(P - wheel.point))
         P = P + ((at - P) @ wheel.axis) * wheel.axis
-    return Mesh(carrier, first, second, P, wheel.axis)
+    return GearMesh(carrier, first, second, P, wheel.axis)
 
 
-def _from_point(carrier: int, first: GearMember, second: GearMember, P: Array, w: Array) -> Mesh:
+def _from_point(carrier: int, first: GearMember, second: GearMember, P: Array, w: Array) -> GearMesh:
     """The mesh at a point that is given: there both have to move the same way."""
     one, other = first.way(P), second.way(P)
     sizes = _length(one) * _length(other)
@@ -292,7 +292,7 @@ def _from_point(carrier: int, first: GearMember, second: GearMember, P: Array, w
     if sizes == 0.0 or _length(across) > TYPED_POINT * sizes:
         raise Finding(MISFIT, "at the pitch point the two gears do not move in the same direction",
                       "it lies in the plane of both axes, on the line through both centres")  # fmt: skip
-    return Mesh(carrier, first, second, P, w)
+    return GearMesh(carrier, first, second, P, w)
 
 
 def _require_at(P: Array, off: Array, size: float) -> None:
@@ -309,14 +309,14 @@ def _meeting(first: GearMember, second: GearMember) -> Array:
     gap, size = abs(float(n @ D)) / _length(n), _length(D)
     if gap > TYPED_POINT * size:
         raise Finding(MISFIT, f"the axes are neither parallel nor do they meet: they pass at {gap:.3g} m",
-                      "gears with crossed axes, as worms, are tied by type: ratio, without their tooth force")  # fmt: skip
+                      "tie gears with crossed axes, as worms, by type: ratio, without their tooth force")  # fmt: skip
     return np.asarray(first.point + float(cross(D, second.axis) @ n) / float(n @ n) * first.axis)
 
 
 # What they press with
 
 
-def line_of_action(given: c.Gear, mesh: Mesh) -> tuple[Array, Array]:
+def line_of_action(given: c.Gear, mesh: GearMesh) -> tuple[Array, Array]:
     """Per unit of tangential force ON the second gear: the load that works, and what pushes it away from the first."""
     first, second, P = mesh.first, mesh.second, mesh.P
     wheel = first if first.turns else second
@@ -328,7 +328,7 @@ def line_of_action(given: c.Gear, mesh: Mesh) -> tuple[Array, Array]:
     return f, math.tan(given.pressure_angle) / math.cos(given.helix) * away(mesh)
 
 
-def away(mesh: Mesh) -> Array:
+def away(mesh: GearMesh) -> Array:
     """The direction, a unit vector, in which flanks push the second gear: out of the first one's teeth."""
 
     def inward(m: GearMember) -> Array:

@@ -23,7 +23,7 @@ from heuncli.tolerances import TYPED_AXES
 
 
 @record
-class Strand:
+class BeltStrand:
     """One strand: where it touches the first and the second pulley, and the direction from the one to the other."""
 
     begin: Array
@@ -61,7 +61,7 @@ def pretension_of(
     return PairLoad(name, first.body, p, second.body, q + off * along, Expression.of(-pull), 0.0, 0.0, 0.0)
 
 
-def strands(given: c.Belt, first: GearMember, second: GearMember) -> tuple[Strand, Strand]:
+def strands(given: c.Belt, first: GearMember, second: GearMember) -> tuple[BeltStrand, BeltStrand]:
     """The strand that comes tight when the first pulley drives on, and the other one. Raises Finding."""
     n = first.axis
     skew = cross(n, second.axis)
@@ -84,5 +84,5 @@ def strands(given: c.Belt, first: GearMember, second: GearMember) -> tuple[Stran
     for side in (1.0, -1.0):  # n x nu of the first side points away from the second pulley: it draws that strand in
         nu = along * x + side * across * y
         begin, end = first.point + r1 * nu, first.point + d + (-r2 if given.crossed else r2) * nu
-        found.append(Strand(begin, end, (end - begin) / math.sqrt(float((end - begin) @ (end - begin)))))
+        found.append(BeltStrand(begin, end, (end - begin) / math.sqrt(float((end - begin) @ (end - begin)))))
     return (found[0], found[1]) if first.sign > 0.0 else (found[1], found[0])

@@ -24,7 +24,7 @@ ONE_SOLID = "export the solid alone, joined to one; solids that touch are shapes
 OUTWARD = "recalculate its normals outward in the program that drew it"
 
 
-class Edges(NamedTuple):
+class MeshEdges(NamedTuple):
     """The edges of triangles, 3 a triangle: ends (3 m, 2) as they run, and which of them are one, in order.
 
     order: edges put so that those of the same ends stand together; starts: where in it each begins, and counts.
@@ -36,7 +36,7 @@ class Edges(NamedTuple):
     counts: Numbers
 
 
-def edges_of(triangles: Numbers) -> Edges:
+def edges_of(triangles: Numbers) -> MeshEdges:
     """The edges; edge 3 k + i of triangle k runs from its corner i to the next."""
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
@@ -44,7 +44,7 @@ def edges_of(triangles: Numbers) -> Edges:
     order = np.argsort(key, kind="stable")
     ordered = key[order]
     starts = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1])) if len(key) else np.empty(0, np.intp)
-    return Edges(ends, order, starts, np.diff(np.append(starts, len(key))))
+    return MeshEdges(ends, order, starts, np.diff(np.append(starts, len(key))))
 
 
 def loose_corners(triangles: Numbers) -> Numbers:
@@ -107,7 +107,7 @@ def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
     number: Numbers = np.unique(first, return_inverse=True)[1].reshape(-1).astype(np.intp)
     middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
     (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
-    volumes: Array = np.bincount(number, V).astype(np.float64)
+    volumes: Array = np.asarray(np.bincount(number, V), dtype=np.float64)
     whole = float(volumes.sum())
     size = float(np.abs(np.stack([a, b, c])).max()) ** 3
     if not abs(whole) > size * np.finfo(float).eps * 64.0:

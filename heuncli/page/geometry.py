@@ -10,7 +10,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.page.packing import drawn
 from heuncli.results import Array, Results
-from heuncli.scenery.machine import GROUND, BodyLook, Machine, machine_of
+from heuncli.scenery.machine import GROUND, BodyLook, Machine, machine_of, shapes_of
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.solids import ROUND, Surface
 from heuncli.spec.models import Shape, Spec
@@ -43,7 +43,7 @@ def scene_of(machine: Machine, spec: Spec, results: Results, poses: Poses) -> di
     """The scene as a page reads it; bodies are told by their numbers, the ground by -1."""
     number = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     kinds = Topologies()
-    bodies = [_body(body, spec.bodies[body.name].shapes or (), results, kinds) for body in machine.bodies]
+    bodies = [_body(body, shapes_of(spec, body.name), results, kinds) for body in machine.bodies]
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
     return {
         "bodies": bodies,

@@ -13,6 +13,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.joint_kinds import JOINTS, TYPES, Kind
+from heuncli.mechanism.couplings import Coupling
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
 from heuncli.records import record
@@ -43,7 +44,7 @@ HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("fi
 class Stood:
     """A machine where it stands at some instants, and how it is seen; size: of the unit that is shown in a metre.
 
-    centers: of mass, in body axes.
+    centers: of mass, in body axes. ropes: over sheaves, as they run at the start.
     """
 
     spec: Spec
@@ -52,6 +53,7 @@ class Stood:
     poses: Poses
     view: SceneView
     size: float
+    ropes: tuple[Coupling, ...] = ()
 
     def seen(self, body: str, points: Array, k: int) -> Array:
         """Where a body's points (..., 3) are seen at an instant, (..., 2) in the unit shown."""
@@ -125,7 +127,9 @@ def bodies(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
         return float(level), -piece.area
 
     pieces.sort(key=order)
-    return [item for piece in pieces for item in piece.items]
+    paths = (stood.seen(GROUND, path, k) for path in stood.machine.paths if not thin)
+    ways: list[Item] = [Strokes(np.stack([ends[:-1], ends[1:]], axis=1), None, THIN) for ends in paths]
+    return ways + [item for piece in pieces for item in piece.items]
 
 
 def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPiece]:
@@ -265,6 +269,13 @@ def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[It
         return _bushing(stood, look, k, thin)
     kind = "damped spring" if isinstance(force, Spring) and force.damping else look.kind
     return _link(stood, look, kind, APPLIED, k, thin)
+
+
+def strands(stood: Stood, k: int) -> Iterator[Strokes]:
+    """The strands of belts."""
+    for body, lines in stood.machine.strands.items():
+        for places in lines:
+            yield Strokes(stood.seen(body, places, k)[None], APPLIED, ARM)
 
 
 def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:

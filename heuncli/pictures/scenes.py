@@ -13,7 +13,7 @@ from heuncli.coupled_start.prepared import prepare_coupled
 from heuncli.drawing.figure import Arrow, Figure, Item, Panel, PlaceLabel, Scaling
 from heuncli.drawing.ticks import short
 from heuncli.mechanism.model import Mechanism
-from heuncli.pictures import machine_items, traces
+from heuncli.pictures import machine_items, rope_items, traces
 from heuncli.pictures.courses import Pictured, require_claimed
 from heuncli.pictures.machine_items import Stood
 from heuncli.pictures.pulls import NOTHING, Pulls, drawn, key, pulls_of
@@ -75,7 +75,8 @@ def standing(scene: PreparedScene, spec: Spec, poses: Poses, view: str | None, u
     seen = view_of(view, scene.mechanism.gravity) if view is not None else None
     if seen is None:
         seen = usual(scene, _extent(machine, centers, poses))
-    return Stood(spec, machine, centers, poses, seen, units.of("m")[1])
+    ropes = tuple(own for own in scene.mechanism.couplings if own.given.type == "rope")
+    return Stood(spec, machine, centers, poses, seen, units.of("m")[1], ropes)
 
 
 def faces(spec: Spec) -> int:
@@ -94,6 +95,7 @@ def _extent(machine: Machine, centers: Mapping[str, Array], poses: Poses) -> Arr
     for body in machine.bodies:
         own = [surface.corners for surface in body.surfaces if not body.spread] + list(body.lines)
         points += [place for part in own for place in poses.at(body.name, part, 0)]
+    points += [place for path in machine.paths for place in path]
     points += [poses.at(j.b, j.q, 0) for j in machine.joints] + [poses.at(j.a, j.p, 0) for j in machine.joints]
     return np.array(points)
 
@@ -102,7 +104,8 @@ def figure(stood: Stood, units: Units, ways: Sequence[Traced], pulls: Pulls, nam
     """The machine with the ways of some points and what acts at the first instant."""
     first = _first(stood)
     later = [item for k in range(len(stood.poses.times) - 1, 0, -1) for item in _later(stood, k)]
-    within = window_of(stood, [traces.seen(stood, one) for one in ways])
+    strands = [line.ends.reshape(-1, 2) for line in rope_items.ropes(stood, 0)]
+    within = window_of(stood, [*(traces.seen(stood, one) for one in ways), *strands])
     arrows = drawn(pulls, stood.view, stood.size, within.side, units)
     window = within.with_arrows([item for item in arrows.items if isinstance(item, Arrow)])
     items = [*clipped(later, window), *traces.curves(stood, ways), *clipped(first, window), *arrows.items]
@@ -124,6 +127,8 @@ def _first(stood: Stood) -> list[Item]:
     """The first instant."""
     items = [*machine_items.bodies(stood, 0), *machine_items.marks(stood, 0)]
     items += [item for line in stood.machine.lines for item in machine_items.line(stood, line, 0)]
+    items += rope_items.ropes(stood, 0)
+    items += machine_items.strands(stood, 0)
     items += machine_items.in_joints(stood, 0)
     return items + machine_items.joints(stood, 0)
 
@@ -132,6 +137,7 @@ def _later(stood: Stood, k: int) -> list[Item]:
     """Another one, in thin lines."""
     items = machine_items.bodies(stood, k, thin=True)
     items += [item for line in stood.machine.lines for item in machine_items.line(stood, line, k, thin=True)]
+    items += rope_items.ropes(stood, k, thin=True)
     return items + machine_items.joints(stood, k, thin=True)
 
 

@@ -154,7 +154,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)
-    value = nothing if load.value is None else load.value
+    value = load.value if load.kind == "torque" and load.value is not None else nothing
     return PointLoad(load.name, "couple", GROUND, None, (value, nothing, nothing), False)
 
 

@@ -135,7 +135,8 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyS
             open_support(supports[load.joint.name], share, stress)
         drive = load.joint.drive
         for own in load.stops:
-            stop, beside = own.stop, free * np.asarray(own.unit.any(axis=1))[:, None, None]  # others of the joint may be touched
+            touched = np.any(own.unit != 0.0, axis=1)  # or others of the joint are
+            stop, beside = own.stop, np.where(touched[:, None, None], free, 0.0)
             if stop.name in elements:
                 open_support(elements[stop.name], of_quantity(beside, stop.quantity), stress)
             if stop.name in shown.get("stops", {}):

@@ -8,6 +8,7 @@ points, or, where these are one place, as the ellipsoid that has its inertia.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from types import MappingProxyType
 
 import numpy as np
 
@@ -18,6 +19,7 @@ from heuncli.scenery.wheels import spokes, wheel_shapes
 from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 
 GROUND = "ground"
+NOTHING: Mapping[str, tuple[Array, ...]] = MappingProxyType({})
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
 OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
@@ -59,13 +61,18 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: the points of the ground."""
+    """All of a scene; grounded: points of the ground; paths: lines in it along which points run; strands: of belts.
+
+    Strands stand on bodies and the ground, in their axes.
+    """
 
     title: str
     bodies: tuple[BodyLook, ...]
     joints: tuple[JointLook, ...]
     lines: tuple[LineLook, ...]
     grounded: Mapping[str, Array]
+    paths: tuple[Array, ...] = ()
+    strands: Mapping[str, tuple[Array, ...]] = NOTHING
 
 
 def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
@@ -81,7 +88,28 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     )
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
-    return Machine(spec.title, bodies, joints, lines, grounded)
+    paths = tuple(drawn_lines(spec, GROUND))
+    if not any(own.type in ("gear", "belt") for own in spec.couplings.values()):
+        return Machine(spec.title, bodies, joints, lines, grounded, paths)
+    from heuncli.scenery.pitch_lines import pitch_lines  # few scenes have gears
+
+    circles, strands = pitch_lines(spec)
+    bodies = tuple(body._replace(lines=(*body.lines, *circles.get(body.name, ()))) for body in bodies)
+    return Machine(spec.title, bodies, joints, lines, grounded, paths, strands)
+
+
+def drawn_lines(spec: Spec, body: str) -> Iterator[Array]:
+    """Lines of a body, or of the ground: outlines of cams, and paths along which points run."""
+    if any(given.type == "cam" for given in spec.couplings.values()) or any(j.path for j in spec.joints.values()):
+        from heuncli.scenery.cams import cam_outlines, paths_of  # few scenes have them
+
+        yield from cam_outlines(spec, body)
+        yield from paths_of(spec, body)
+
+
+def shapes_of(spec: Spec, body: str) -> Sequence[Shape]:
+    """What a body is drawn by: its shapes; without any, the wheels that it is."""
+    return spec.bodies[body].shapes or tuple(wheel_shapes(spec, body))
 
 
 def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
@@ -91,19 +119,19 @@ def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[Lin
     ends = [j.p for j in joints if j.a == name] + [j.q for j in joints if j.b == name]
     ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
     ends += points.values()
-    shapes = body.shapes or tuple(wheel_shapes(spec, name))
+    shapes = shapes_of(spec, name)
     surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name)))
+        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name), *drawn_lines(spec, name)))
     # of point masses alone neither centre nor inertia is known yet, nor needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
-    line = _through([*ends, *centre])
+    line, drawn = _through([*ends, *centre]), tuple(drawn_lines(spec, name))
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
-    if float(np.ptp(line, axis=0).max()) < SMALL * gyration:
+    if not drawn and float(np.ptp(line, axis=0).max()) < SMALL * gyration:
         return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
-    return BodyLook(name, points, (), (line,))
+    return BodyLook(name, points, (), (line, *drawn))
 
 
 def _arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:

@@ -19,7 +19,7 @@ EDGE = (
 )
 
 
-class Drawn(NamedTuple):
+class ThinnedMesh(NamedTuple):
     """Corners and triangles that are drawn; of each corner of the mesh which of them it is; the cells' size, 0: all."""
 
     corners: Array
@@ -28,10 +28,10 @@ class Drawn(NamedTuple):
     cell: float
 
 
-def thinned(corners: Array, triangles: Numbers, most: int = MOST) -> Drawn:
+def thinned(corners: Array, triangles: Numbers, most: int = MOST) -> ThinnedMesh:
     """A mesh of at most so many triangles that looks like it."""
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)
-    drawn = Drawn(corners, triangles, np.arange(len(corners)), 0.0)
+    drawn = ThinnedMesh(corners, triangles, np.arange(len(corners)), 0.0)
     cells = CELLS
     while len(drawn.triangles) > most and cells > 1:
         cell = np.minimum((corners - low) / np.where(size > 0.0, size, 1.0) * cells, cells - 1).astype(np.int64)
@@ -40,7 +40,7 @@ def thinned(corners: Array, triangles: Numbers, most: int = MOST) -> Drawn:
         middles = np.stack([np.bincount(number, x) for x in corners.T], axis=1) / np.bincount(number)[:, None]
         a, b, c = number[triangles].T
         faces = number[triangles][(a != b) & (b != c) & (c != a)]
-        drawn = Drawn(middles, faces, number, float(np.sqrt((size * size).sum())) / cells)
+        drawn = ThinnedMesh(middles, faces, number, float(np.sqrt((size * size).sum())) / cells)
         cells = cells * 3 // 4
     return drawn
 

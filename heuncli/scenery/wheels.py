@@ -17,7 +17,7 @@ THICK = 0.06  # of its radius: how far a disc goes on either side of its rim
 def wheels_of(spec: Spec, body: str) -> Iterator[RollingWheel]:
     """The wheels of a body."""
     for given in spec.rolling.values():
-        if isinstance(given, RollingWheel) and given.wheel.body == body:
+        if given.wheel.body == body:
             yield given
 
 

@@ -18,7 +18,7 @@ AT_ONCE = 1 << 20  # crossings of triangles and planes that are looked at togeth
 
 
 @record
-class Crossings:
+class CrossedTriangles:
     """Crossings of triangles and planes, q of them: numbers of the triangle and the plane.
 
     lone (q, 3): the corners of the triangle in their order, first the one that has a side of the plane to itself;
@@ -40,7 +40,7 @@ def levels(heights: Array, triangles: Indices, D: Array) -> tuple[Indices, Indic
     return np.searchsorted(D, least(own), "left"), np.searchsorted(D, most(own), "left")
 
 
-def crossings(heights: Array, triangles: Indices, D: Array, low: Indices, high: Indices) -> Crossings:
+def crossings(heights: Array, triangles: Indices, D: Array, low: Indices, high: Indices) -> CrossedTriangles:
     """All crossings, those of a triangle one after the other."""
     count = high - low
     crossed = np.flatnonzero(count)
@@ -56,10 +56,10 @@ def crossings(heights: Array, triangles: Indices, D: Array, low: Indices, high: 
     h = np.take_along_axis(h, turned, axis=1)
     own = np.take_along_axis(triangles[triangle], turned, axis=1)
     part = h[:, :1] / (h[:, :1] - h[:, 1:])
-    return Crossings(triangle, plane, own, up, h, part)
+    return CrossedTriangles(triangle, plane, own, up, h, part)
 
 
-def met_at(X: Array, c: Crossings) -> tuple[Array, Array]:
+def met_at(X: Array, c: CrossedTriangles) -> tuple[Array, Array]:
     """The ends (q, 2) of the lines in which planes meet triangles, with the inside to the left."""
     a, b, d = (X[c.lone[:, i], :2] for i in range(3))
     p = a + c.part[:, :1] * (b - a)
@@ -68,7 +68,7 @@ def met_at(X: Array, c: Crossings) -> tuple[Array, Array]:
     return np.where(swapped, q, p), np.where(swapped, p, q)
 
 
-def loops(c: Crossings, corners: int, planes: int) -> Indices:
+def loops(c: CrossedTriangles, corners: int, planes: int) -> Indices:
     """Of each crossing the number of the closed line that it is part of, from 0."""
 
     def key(i: int) -> Array:

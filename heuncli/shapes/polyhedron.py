@@ -21,7 +21,7 @@ import numpy as np
 from heuncli.meshes.model import crossed, middle_of, moments
 from heuncli.records import record
 from heuncli.results import Array, Indices
-from heuncli.shapes.crossed_triangles import AT_ONCE, Crossings, crossings, levels, loops, met_at
+from heuncli.shapes.crossed_triangles import AT_ONCE, CrossedTriangles, crossings, levels, loops, met_at
 from heuncli.shapes.inertia import assembled
 from heuncli.shapes.outlines import Outline, Planes
 from heuncli.shapes.rotations import cross, perpendicular
@@ -189,7 +189,7 @@ class Polyhedron(Thick):
         first[at.order] = moments[1:].T @ at.axes[:, :2].T + moments[0][:, None] * about
         return areas, first
 
-    def crossed(self, at: LocalSurface) -> Iterator[Crossings]:
+    def crossed(self, at: LocalSurface) -> Iterator[CrossedTriangles]:
         """The crossings, some planes at a time: all of a plane together."""
         k = len(at.D)
         count = np.cumsum(np.bincount(at.low, minlength=k + 1) - np.bincount(at.high, minlength=k + 1))[:k]
@@ -256,7 +256,7 @@ def told_apart(values: Array, near: float) -> Array:
     return found[np.append(True, np.diff(found) > near)] if len(found) else found
 
 
-def parts_above(at: LocalSurface, c: Crossings) -> Array:
+def parts_above(at: LocalSurface, c: CrossedTriangles) -> Array:
     """Moments (10, k) of the columns under the parts of triangles that are above the planes which cross these."""
     A = at.A[c.triangle]
     a, b, d = (at.X[c.lone[:, i], :2].T for i in range(3))

@@ -26,7 +26,7 @@ from heuncli.shapes.polyhedron import LocalSurface, Polyhedron
 
 
 @record
-class Edges2:
+class OutlineEdges:
     """Edges of outlines, from p (q, 2) to q (q, 2) along e1 and e2, of which plane and of which closed line."""
 
     p: Array
@@ -78,14 +78,16 @@ def of_polyhedron(part: object, at: CuttingPlanes) -> Profile | None:
     return Profile(met & np.isfinite(rows[0]), dict(zip(names, rows, strict=True)), missing)
 
 
-def edges_of(part: Polyhedron, local: LocalSurface) -> Iterator[Edges2]:
+def edges_of(part: Polyhedron, local: LocalSurface) -> Iterator[OutlineEdges]:
     """The edges of outlines, those of some planes at a time."""
     for c in part.crossed(local):
         p, q = met_at(local.X, c)
-        yield Edges2(p, q, c.plane, loops(c, len(part.corners_at), len(local.D)))
+        yield OutlineEdges(p, q, c.plane, loops(c, len(part.corners_at), len(local.D)))
 
 
-def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurface) -> tuple[Array, dict[int, str]]:
+def properties(
+    edges: OutlineEdges, k: int, met: Mask, near: float, local: LocalSurface
+) -> tuple[Array, dict[int, str]]:
     """Area, I1, I2, J, c1, c2 (6, k) of planes, and why they are not known, by the planes' numbers."""
     length = np.sqrt(((edges.q - edges.p) ** 2).sum(axis=1))
     L = np.bincount(edges.plane, length, k)
@@ -119,7 +121,7 @@ def properties(edges: Edges2, k: int, met: Mask, near: float, local: LocalSurfac
     return np.array([A, I1, I2, J, c1, c2]), missing
 
 
-def counted(edges: Edges2, length: Array, k: int, near: float) -> tuple[Indices, Indices]:
+def counted(edges: OutlineEdges, length: Array, k: int, near: float) -> tuple[Indices, Indices]:
     """How many parts and holes the outlines have, (k,): closed lines that enclose more than the digits of the file."""
     (x, y), (u, v) = edges.p.T, edges.q.T
     areas = np.bincount(edges.line, 0.5 * (x * v - u * y))

@@ -23,6 +23,7 @@ CHAPTERS: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {
     **f.LOADS,
     "Impulses": f.ImpulseEntry,
     "Stops": f.StopEntry,
+    "Latches": f.LatchEntry,
     **fc.COUPLINGS,
     "Rolling": RollingEntry,
     "Sections": f.SectionEntry,

@@ -121,7 +121,7 @@ def limits_of(stop: f.StopEntry) -> tuple[Literal["angle", "travel", "length"], 
 
 
 class Held(NamedTuple):
-    """What a latch holds: a joint's coordinate, at a value, at limits of its stop (-1 lower, 1 upper), or where it is."""
+    """What a latch holds: a joint's coordinate, at a value, at limits of its stop (-1 lower, 1 upper), or anywhere."""
 
     joint: str
     quantity: Literal["angle", "travel", "length"]

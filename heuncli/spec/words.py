@@ -28,6 +28,7 @@ KEY_WORDS = {
     "variables": "parameters", "constants": "parameters", "version": "heun", "name": "title", "k": "stiffness",
     "c": "damping", "free_length": "length", "rest_length": "length", "direction": "axis", "points_on": "points",
     "bumpers": "stops", "limits": "stops", "contacts": "stops", "buffers": "stops", "bumper": "stops",
+    "latch": "latches", "catches": "latches", "locks": "latches", "detents": "latches", "clamps": "latches",
     "limit": "stops", "contact": "stops", "stop": "stops", "endstops": "stops", "end_stops": "stops",
     "blows": "impulses", "blow": "impulses", "impulse": "impulses", "hits": "impulses", "shocks": "impulses",
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",

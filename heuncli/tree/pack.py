@@ -229,8 +229,10 @@ class _Builder:
         if path is None or quantity != "travel":
             return row
         reach, slope, bend = path.greatest
-        return replace(row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
-                       bend=bend)  # fmt: skip
+        return replace(
+            row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
+            bend=bend,
+        )  # fmt: skip
 
     def _put_path(self, path: Path) -> int:
         """Add the pieces of a path; which of all is the first."""

@@ -129,6 +129,7 @@ def arrangement(
     driven = any(j.drive is not None for j in mechanism.joints)
     works = works or driven or bool(mechanism.blows or mechanism.stops)
     works = works or any(j.restitution is not None for j in mechanism.joints)
+    works = works or any(row.restitution is not None for own in mechanism.couplings for row in own.rows)
     return Arrangement(idle, omega, framed(mechanism, start, inertias, size, works, named, drives, tree))
 
 

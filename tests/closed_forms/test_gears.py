@@ -25,7 +25,7 @@ ROUNDING = 1e-12
     ],
 )
 def test_wheels_turn_by_their_ratio_and_bear_their_tooth_force(mesh: dict[str, Any], ratio: float, arm: float) -> None:
-    """The motor turns its own inertia and a ninth of the wheel's; the tooth force is what is left, at the pitch point."""
+    """The motor turns its own inertia and a ninth of the wheel's; the tooth force is the rest, at the pitch point."""
     scene = pair(pressure_angle="25 deg", helix="15 deg", **mesh)
     scene["ground"]["points"]["P"] = [0.1, 0, 0]
     found = solved(scene)
@@ -73,13 +73,12 @@ def test_order_of_the_gears_and_direction_of_the_joints_change_names_alone() -> 
 
 def test_rack_and_pinion() -> None:
     """A rack of 2 kg falls, and turns a pinion as heavy as 8 kg where their teeth meet."""
+    guide = {"type": "slide", "from": "ground.B", "to": "rack.c", "axis": [0, 0, 1], "initial": {"speed": 1}}
     scene = {
         "gravity": [0, 0, -9.81],
         "ground": {"points": {"A": [0, 0, 0], "B": [0.05, 0, 0], "P": [0.05, 0.03, 0]}},
-        "bodies": {"pinion": {"mass": 1, "center": [0, 0, 0], "inertia": [0.02, 0.02, 0.02], "points": {"c": [0, 0, 0]}},
-                   "rack": wheel(0.1, (0.05, 0, 0), 2.0)},
-        "joints": {"p": pin("ground.A", "pinion.c", (0, 1, 0)),
-                   "r": {"type": "slide", "from": "ground.B", "to": "rack.c", "axis": [0, 0, 1], "initial": {"speed": 1}}},
+        "bodies": {"pinion": wheel(0.02, across=0.02), "rack": wheel(0.1, (0.05, 0, 0), 2.0)},
+        "joints": {"p": pin("ground.A", "pinion.c", (0, 1, 0)), "r": guide},
         "couplings": {"mesh": {"type": "gear", "of": ["p", "r"], "at": "ground.P"}},
         "analysis": STATE,
     }  # fmt: skip

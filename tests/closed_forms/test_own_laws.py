@@ -50,6 +50,7 @@ def block(load: str, analysis: str = RUN) -> str:
          'type: friction, joint: shaft, torque: "3 + 0*t", speed: 0.1'),
     ],
 )  # fmt: skip
+@pytest.mark.heavy
 def test_a_law_says_what_numbers_say(numbers: str, law: str) -> None:
     """The same motion and the same value; what has no potential then is work."""
     wanted, found = solved(block(f"{{{numbers}}}")), solved(block(f"{{{law}}}"))
@@ -194,3 +195,36 @@ def test_a_coordinate_told_otherwise(text: str) -> None:
                 found = limited.value(t, [own[use] for use in limited.uses])
                 assert found == pytest.approx(min(max(whole, -7.0), 7.0), rel=1e-15)
     assert composed.product(compile_expression("2", scope), compile_expression("3", scope)).constant == 6.0
+
+
+PULSE = """
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+tables: {{spike: {{x: [-90, 0.5, 0.50005, 0.5001, 90], y: [0, 0, 400, 0, 0]}},
+          twist: {{x: [-4, 0.5, 0.50005, 0.5001, 4], y: [0, 0, 400, 0, 0]}}}}
+bodies:
+  m: {{mass: 2, center: [0, 0, 0], inertia: [0.1, 0.2, 0.3], points: {{c: [0, 0, 0]}}, position: [0.1, {aside}, 0],
+       velocity: [3, 0, 0], angular_velocity: [0, 0, 2]}}
+forces: {{f: {{{load}}}}}
+analysis: {{times: [0, 0.9], tolerance: 1e-10}}
+"""
+WORK = 400 * 0.5e-4  # of the triangle
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(
+    ("load", "work", "aside"),
+    [
+        ('type: spring, from: ground.O, to: m.c, force: "table(spike, length)"', WORK, 0.0),
+        ('type: spring, from: m.c, to: ground.O, force: "400 if 0.5 < length < 0.5001 else 0"', 2 * WORK, 0.0),
+        ('type: spring, from: ground.O, to: m.c, force: "table(spike, length)"', WORK, 0.2),
+        ("type: bushing, from: ground.O, to: m.c, stiffness: {x: spike}", -WORK, 0.2),
+        ("type: bushing, from: ground.O, to: m.c, turning: {z: twist}", -WORK, 0.0),
+        ("type: bushing, from: m.c, to: ground.O, turning: {z: twist}, to_orientation: {axis: [0, 0, 1], angle: 1.7}",
+         WORK, 0.0),
+    ],
+)  # fmt: skip
+def test_what_acts_for_a_moment_is_not_stepped_over(load: str, work: float, aside: float) -> None:
+    """A spike a ten-thousandth wide, passed in a hundredth of a step: the work that it does, and no more."""
+    found = solved(PULSE.format(load=load, aside=aside))
+    near(found.energy["kinetic"], found.energy["kinetic"][0] + np.array([0.0, work]), 9.0, 1e-8)

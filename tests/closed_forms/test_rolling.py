@@ -231,3 +231,37 @@ def test_torque_on_an_axle_moves_the_load_between_the_axles(torque: float) -> No
     front = (momentum + G * (10 * 0.5 + 1 * 1.0)) / 1.0
     near(r.couplings["tyre_f"]["on"]["front"]["force"][:, 1], np.full(3, front), 100.0)
     near(r.couplings["tyre_r"]["on"]["rear"]["force"][:, 1], np.full(3, 12 * G - front), 100.0)
+
+
+ROBOT = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  frame: {mass: 5, center: [0.1, 0, 0], inertia: [0.1, 0.2, 0.2], position: [0, 0, 0.1],
+          points: {l: [0, 0.25, 0], r: [0, -0.25, 0], castor: [0.4, 0, -0.1]}}
+  left: {mass: 1, center: [0, 0, 0], inertia: [0.003, 0.005, 0.003], points: {c: [0, 0, 0]}}
+  right: {mass: 1, center: [0, 0, 0], inertia: [0.003, 0.005, 0.003], points: {c: [0, 0, 0]}}
+joints:
+  axle_l: {type: pin, from: frame.l, to: left.c, axis: [0, 1, 0]}
+  axle_r: {type: pin, from: frame.r, to: right.c, axis: [0, 1, 0]}
+  castor: {type: plane, from: ground.O, to: frame.castor, normal: [0, 0, 1]}
+drives:
+  motor_l: {joint: axle_l, angle: 3*t}
+  motor_r: {joint: axle_r, angle: 5*t}
+rolling:
+  tyre_l: {wheel: left.c, axis: [0, 1, 0], radius: 0.1, on: ground.O, normal: [0, 0, 1]}
+  tyre_r: {wheel: right.c, axis: [0, 1, 0], radius: 0.1, on: ground.O, normal: [0, 0, 1]}
+analysis: {duration: 6, samples: 7}
+"""
+
+
+def test_two_driven_wheels_steer_round_a_circle() -> None:
+    """Drives leave no freedom, and yet no pose follows from them: v = R (w_r + w_l) / 2, turning R (w_r - w_l) / b."""
+    r = solved(ROBOT)
+    v, turning = 0.1 * 4.0, 0.1 * 2.0 / 0.5
+    angle = turning * r.time
+    wanted = np.stack([np.sin(angle), 1.0 - np.cos(angle), 0.1 * turning / v + 0.0 * angle], axis=1) * v / turning
+    near(r.bodies["frame"]["position"], wanted, 1.0, 1e-8)
+    assert r.model["method"] != "none"
+    assert [sentence for sentence in r.model["not_reduced"] if "rolls" in sentence]

@@ -121,6 +121,7 @@ def test_a_wheel_without_a_place_is_put_on_its_plane_and_rolls() -> None:
     [
         ("position: [0, 0, 0.35]", "does-not-fit"),
         ("position: [0, 0, -0.3]", "does-not-fit"),
+        ("orientation: {axis: [1, 0, 0], angle: 90 deg}", "does-not-fit"),
         ("position: [0, 0, 0.3], velocity: [1, 0, 0], angular_velocity: [0, 2, 0]", "rates-do-not-fit"),
         ("position: [0, 0, 0.3], velocity: [0, 1, 0], angular_velocity: [0, 0, 0]", "rates-do-not-fit"),
     ],

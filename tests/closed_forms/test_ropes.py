@@ -89,8 +89,13 @@ bodies:
 couplings:
   tackle:
     type: rope
-    through: [ground.A, {{sheave: block.one, radius: 0.15, side: under}}, {{sheave: ground.O1, radius: 0.15, side: over}},
-              {{sheave: block.two, radius: 0.15, side: under}}, {{sheave: ground.O2, radius: 0.15, side: over}}, hand.top]
+    through:
+      - ground.A
+      - {{sheave: block.one, radius: 0.15, side: under}}
+      - {{sheave: ground.O1, radius: 0.15, side: over}}
+      - {{sheave: block.two, radius: 0.15, side: under}}
+      - {{sheave: ground.O2, radius: 0.15, side: over}}
+      - hand.top
 analysis: {{type: state}}
 """
 
@@ -123,8 +128,10 @@ joints:
 couplings:
   chain:
     type: rope
-    through: [{{sheave: pair.hub, radius: 0.20, side: left, slip: none}}, {{sheave: block.hub, radius: 0.18, side: left}},
-              {{sheave: pair.hub, radius: 0.16, side: left, slip: none}}]
+    through:
+      - {{sheave: pair.hub, radius: 0.20, side: left, slip: none}}
+      - {{sheave: block.hub, radius: 0.18, side: left}}
+      - {{sheave: pair.hub, radius: 0.16, side: left, slip: none}}
 forces: {{hand: {{type: torque, joint: axle, value: M}}}}
 parameters: {{M: "-30*{G}*0.02"}}
 analysis: {{type: state}}
@@ -172,3 +179,54 @@ analysis: {{duration: 0.5, samples: 6}}
     assert results.couplings["cv"]["torque"] == pytest.approx(np.full(6, 2.25), rel=1e-8)
     couple = np.linalg.norm(results.couplings["cv"]["on"]["b"]["moment"], axis=1)
     assert couple == pytest.approx(np.full(6, 2.25 / np.cos(bend / 2)), rel=1e-8)
+
+
+def test_sections_see_where_strands_act() -> None:
+    """A jib with a sheave of 0.1 m at its end: the rope runs back above it to the ground, and down to a weight.
+
+    Cut in the middle, the piece beyond has the pulls of both strands: -T along the jib, T down, and their moments.
+    """
+    text = f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{O: [0, 0], P: [0, 0.1]}}}}
+bodies:
+  jib:
+    shapes: [{{type: rod, from: [0, 0], to: [2, 0], mass: 0.001}}]
+    points: {{root: [0, 0], tip: [2, 0]}}
+  weight: {{mass: 5, center: [0, 0], inertia: 1, position: [2.1, -1], points: {{top: [0, 0]}}}}
+joints: {{root: {{type: weld, from: ground.O, to: jib.root}}}}
+couplings: {{rope: {{type: rope, through: [ground.P, {{sheave: jib.tip, radius: 0.1, side: over}}, weight.top]}}}}
+sections: {{middle: {{body: jib, at: [1, 0, 0], normal: [1, 0, 0]}}}}
+analysis: {{type: state}}
+"""
+    results = solved(text)
+    T, own = 5 * G, 0.0005 * G
+    section = results.sections["middle"]
+    assert section["force"][0] == pytest.approx([-T, -T - own, 0.0], rel=DIGITS)
+    assert section["moment"][0, 2] == pytest.approx(0.1 * T - 1.1 * T - 0.5 * own, rel=DIGITS)
+    assert results.foundation["force"][0] == pytest.approx([0.0, -T - 2 * own, 0.0], abs=DIGITS * T)
+
+
+def test_three_bearings_and_what_is_open() -> None:
+    """A rope that holds what a second one like it holds, too: how they share is open, and their sum is certain."""
+    text = f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{A: [-0.1, 3], B: [0.1, 3], O: [0, 3]}}}}
+bodies: {{block: {{mass: 5, center: [0, 0], inertia: 1, points: {{hub: [0, 0], eye: [0, 0]}}}}}}
+joints: {{guide: {{type: slide, from: ground.O, to: block.hub, axis: [0, 1]}}}}
+couplings:
+  one: {{type: rope, through: [ground.A, {{sheave: block.hub, radius: 0.1, side: under}}, ground.B]}}
+  two: {{type: rope, through: [ground.O, block.eye]}}
+analysis: {{type: state}}
+"""
+    results = solved(text)
+    assert "tension" in results.couplings["one"]["open"]
+    assert "tension" in results.couplings["two"]["open"]
+    sums = [(one["terms"], one["value"][0]) for one in results.certain_sums if "couplings.one.tension" in one["terms"]]
+    (terms, value), *_ = sums
+    assert 2 * terms["couplings.two.tension"] == pytest.approx(terms["couplings.one.tension"])
+    assert value / terms["couplings.two.tension"] == pytest.approx(5 * G, rel=1e-9)

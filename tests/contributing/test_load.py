@@ -12,6 +12,7 @@ COUNTERWEIGHT = Addition(  # a rope over a pulley, whose pull is the same at any
     "A load",
     {
         "heuncli/spec/format.py": (
+            Edit("    ForceInTime,\n", "    Force,\n    ForceInTime,\n"),
             Edit("LoadEntry = (\n", """class CounterweightEntry(Entry):
     type: Literal["counterweight"]
     from_: AnEnd = key(alias="from")
@@ -26,7 +27,7 @@ LoadEntry = (
 """),
         ),
         "heuncli/spec/models.py": (
-            Edit("Force = PointForce | ", '''class Counterweight(NamedTuple):
+            Edit("Force = (\n    PointForce | ", '''class Counterweight(NamedTuple):
     """A force that draws two points together, the same at any distance [N]."""
 
     from_: End
@@ -35,7 +36,8 @@ LoadEntry = (
     type: Literal["counterweight"] = "counterweight"
 
 
-Force = Counterweight | PointForce | '''),
+Force = (
+    Counterweight | PointForce | '''),
         ),
         "heuncli/spec/resolve.py": (
             Edit("            case f.TurnSpringEntry():\n", """            case f.CounterweightEntry():

@@ -1,4 +1,4 @@
-"""Joints that follow others, let go: couplings hold them, and what leads feels their inertia by the square of the ratio."""
+"""Joints that follow others, let go: couplings hold them; what leads feels their inertia by the ratio's square."""
 
 from __future__ import annotations
 

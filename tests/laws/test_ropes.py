@@ -1,4 +1,4 @@
-"""Ropes over sheaves in motion: their length as the poses tell it, momentum and energy, and the same rope told otherwise."""
+"""Ropes over sheaves in motion: their length as the poses tell it, energy, and the same rope told otherwise."""
 
 from __future__ import annotations
 
@@ -53,8 +53,12 @@ couplings:
   rope: {type: rope, through: [WAY]}
 analysis: {duration: 0.5, samples: 6}
 """
-THERE = ("ground.A", "{sheave: lower.hub, radius: 0.15, side: SIDE1}", "{sheave: upper.hub, radius: 0.3, side: SIDE2 SLIP}",
-         "hand.top")  # fmt: skip
+THERE = (
+    "ground.A",
+    "{sheave: lower.hub, radius: 0.15, side: SIDE1}",
+    "{sheave: upper.hub, radius: 0.3, side: SIDE2 SLIP}",
+    "hand.top",
+)
 SLIPS = pytest.mark.parametrize("slip", ["", ", slip: none"])
 
 
@@ -108,7 +112,7 @@ def test_its_length_as_the_poses_tell_it() -> None:
     hand, A = points_of(results, "hand", (0, 0)), np.tile([0.1, 5.0], (6, 1))
 
     def way(P: Array, Q: Array, offset: float) -> tuple[Array, Array]:
-        """The length of a tangent and its angle, which is that of the way between centres less asin(offset/distance)."""
+        """The length of a tangent and its angle, that of the way between centres less asin(offset/distance)."""
         far, along = np.hypot(*(Q - P).T), np.arctan2(*(Q - P).T[::-1])
         return np.sqrt(far**2 - offset**2), along - np.arcsin(offset / far)
 

@@ -25,6 +25,7 @@ SCENES = {
     "lift": ("analysis.duration=0.1", "analysis.samples=4"),
     "punch": ("analysis.duration=1", "analysis.samples=4"),
     "drawer": ("analysis.duration=0.1", "analysis.samples=4"),
+    "cart": ("analysis.duration=0.1", "analysis.samples=4"),
 }
 
 

@@ -1,4 +1,4 @@
-"""Wheels are drawn as they are: a disc about its axle with spokes that turn with it, a ball; a body's own shapes stay."""
+"""Wheels are drawn as they are: a disc about its axle with spokes, a ball; a body's own shapes stay."""
 
 from __future__ import annotations
 

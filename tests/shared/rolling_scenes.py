@@ -1,4 +1,4 @@
-"""Random scenes with wheels: a wheel or ball that stands on a plane of the ground or of a body, and what hangs on it."""
+"""Random scenes with wheels: a wheel or ball on a plane of the ground or of a body, and what hangs on it."""
 
 from __future__ import annotations
 

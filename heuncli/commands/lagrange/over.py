@@ -31,6 +31,7 @@ from heuncli.results import Array
 from heuncli.spec.models import Analysis, Drive, Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import set_up
+from heuncli.tree.held_speeds import holds_speed
 from heuncli.tree.layout import Layout, places_of_rates
 
 MEAN = 1e-7  # of the mean of e: what half as many values may change, below the six digits that are told
@@ -130,6 +131,9 @@ def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedS
     for load in layout.mechanism.rubbing:
         message = f"forces.{load.name} hangs on what its joint carries: it is told of an instant, not over a range"
         raise refused(asked, message, "leave it out; or take one instant")
+    if holds_speed(layout).any() and not layout.mechanism.planar:
+        message = "what rolls comes to poses by its way: no coordinate tells them"
+        raise refused(asked, message, "heun run tells its motion; in the plane wheels roll along lines")
     if layout.contacts:
         message = f"{layout.contacts[0].name} may open and close on the way"
         raise refused(asked, message, "leave stops and ropes out")

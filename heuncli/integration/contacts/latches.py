@@ -28,7 +28,7 @@ UNWATCHED = -1.0  # of a contact: a latch holds it at its limit, and it is not l
 
 
 class Bolts(NamedTuple):
-    """What the conditions say of each latch: whether it is out, whether it is drawn back, whether its value is passed."""
+    """What the conditions say of each latch: whether it is out, is drawn back, and whether its value is passed."""
 
     out: tuple[bool, ...]
     back: tuple[bool, ...]
@@ -89,6 +89,11 @@ class Latches:
         for i, at in self.holds.items():
             found[i], found[n + self.layout.latches.index(i)] = 1.0, at
         return found
+
+    @property
+    def idle(self) -> list[str]:
+        """Those that have not caught."""
+        return [stop.name for i, stop in self.stops.items() if not self.caught[i]]
 
     def let_go(self, said: Bolts) -> list[str]:
         """Let those go that are drawn back; their names."""
@@ -167,6 +172,9 @@ def with_catches(layout: Layout, sides: RightSides, catches: Sequence[Catch]) ->
 
 
 def work_of_catches(layout: Layout, catches: Sequence[Catch], multipliers: Array) -> float:
-    """Work of the impulses of latches that catch, by the mean of the rates before and behind [J]; multipliers (n, rows)."""
+    """Work of the impulses of latches that catch [J], by the mean of the rates before and behind.
+
+    multipliers (n, rows): of all columns of the blow.
+    """
     whole = multipliers.sum(axis=0)
     return sum(0.5 * catch.rate * float(whole[layout.contacts[catch.contact].row]) for catch in catches)

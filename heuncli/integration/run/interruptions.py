@@ -104,7 +104,9 @@ class Interruptions:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be told of the contacts."""
-        return tuple(self.contacts.notes) if self.contacts is not None else ()
+        if self.contacts is None:
+            return ()
+        return (*self.contacts.notes, *(f"{name} did not catch" for name in self.contacts.latches.idle))
 
 
 def closed_at_start(scene: Evaluator) -> Array:

@@ -128,7 +128,7 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
         elif load.kind == "turn_spring":
             if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
                 yield Departure(f"{name} turns about an axis in it", 1.0, True)
-        elif load.value is not None and load.value.constant != 0.0:
+        elif load.kind == "torque" and load.value is not None and load.value.constant != 0.0:
             joint = mechanism.joints[load.joint]
             turns = "turning" in JOINTS[joint.kind].motions
             if turns != seen.stances[load.joint].along and not _all_stay(seen, joint):

@@ -11,8 +11,9 @@ from heuncli.spec.format_couplings import CamEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 CONTACTS = {
-    "roller": ("radius", "the radius of the roller"), "flat": ("normal", "the normal of the face, axes of the follower"),
-}  # fmt: skip
+    "roller": ("radius", "the radius of the roller"),
+    "flat": ("normal", "the normal of the face, axes of the follower"),
+}
 
 
 def cams(draft: DraftDocument) -> Iterator[tuple[str, CamEntry]]:

@@ -41,8 +41,10 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
 def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
     """Every type is of so many joints."""
     for name, coupling in draft.document.couplings.items():
-        counts, of = COUNTS.get(coupling.type), getattr(coupling, "of", [])
-        if counts is not None and len(of) not in counts:
+        if not isinstance(coupling, GearEntry | BeltEntry | ScrewEntry | DifferentialEntry):
+            continue
+        counts, of = COUNTS[coupling.type], coupling.of
+        if len(of) not in counts:
             some = " or ".join(map(str, counts))
             message = f"{', '.join(of) or 'nothing'} is named"
             yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
@@ -61,9 +63,8 @@ def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
         if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
             hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
-            yield Violation(
-                (*path, "teeth"), f"teeth {', '.join(f'{z:g}' for z in gear.teeth)} are no pair of gears", hint
-            )
+            told = ", ".join(f"{z:g}" for z in gear.teeth)
+            yield Violation((*path, "teeth"), f"teeth {told} are no pair of gears", hint)
         if gear.internal and gear.teeth is None and gear.ratio is None:
             yield Violation(
                 (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
@@ -105,11 +106,8 @@ def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
         if isinstance(own, BeltEntry):
             if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
-                yield Violation(
-                    (*path, "radii"),
-                    f"{', '.join(f'{r:g}' for r in own.radii)} m are no radii of two pulleys",
-                    "two lengths above zero",
-                )
+                told = ", ".join(f"{r:g}" for r in own.radii)
+                yield Violation((*path, "radii"), f"{told} m are no radii of two pulleys", "two lengths above zero")
             if own.pretension < 0.0:
                 yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
         if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):

@@ -105,7 +105,7 @@ def latch_joint(draft: DraftDocument) -> Iterator[Violation]:
             message = f"the rod {held.joint} gives {fixed[0]}, but until a latch catches its length is free"
             yield Violation(where, message, f"leave {fixed[0]} out")
         yield from beyond_stops(draft, name, held)
-        for side in held.sides or (0,):
+        for side in held.sides or ((0,) if held.at is not None else ()):
             other = taken.setdefault((held.joint, held.quantity, held.at, side), name)
             if other != name:
                 message = f"{what} is held there by {other} already"

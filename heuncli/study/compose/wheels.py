@@ -16,21 +16,16 @@ LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts"
 SLIPS = "the wheel {} would take more friction than there is: it slips"
 
 
-def wheels_of(spec: Spec) -> dict[str, RollingWheel]:
-    """The wheels of a spec."""
-    return {name: given for name, given in spec.couplings.items() if isinstance(given, RollingWheel)}
-
-
 def at_the_instant(spec: Spec, couplings: Mapping[str, Any]) -> Iterator[str]:
     """What lifts or slips at the only instant there is; couplings: their block."""
-    for name, wheel in wheels_of(spec).items():
+    for name, wheel in spec.rolling.items():
         if name in couplings:
             yield from (sentence.format(name) for sentence in told(wheel, couplings[name], 0))
 
 
 def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
     """What would lift or slip in each blow, by its impulses."""
-    wheels = wheels_of(spec)
+    wheels = spec.rolling
     couplings = struck.shown["couplings"] if wheels else {}
     for k, jump in enumerate(struck.jumps):
         for name, wheel in wheels.items():

@@ -160,9 +160,17 @@ def set_up_at_rest(setup: Setup, left_out: tuple[str, ...], looked_for: bool) ->
 
 
 def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
-    """Every rope as one that may go slack: at rest it bears or does not, and ends no run by being pushed."""
+    """Every rope as one that may go slack: at rest it bears or does not, and ends no run by being pushed.
+
+    So does what a cam presses: it may lie on it or not.
+    """
     joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
-    return replace(mechanism, joints=tuple(joints))
+    couplings = [
+        replace(own, rows=tuple(replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r
+                                for r in own.rows))
+        for own in mechanism.couplings
+    ]  # fmt: skip
+    return replace(mechanism, joints=tuple(joints), couplings=tuple(couplings))
 
 
 def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[str, ...]]:

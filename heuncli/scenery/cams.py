@@ -1,0 +1,49 @@
+"""What cams and paths look like: the outline of a disc, and the way of a point, as lines in their body's axes.
+
+The outline is that of disc and follower whose axes agree at coordinate zero, as they mostly do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from heuncli.mechanism.build import joint
+from heuncli.mechanism.build_couplings import cam_rows
+from heuncli.mechanism.cam_profiles import flank
+from heuncli.results import Array
+from heuncli.shapes.rotations import about, perpendicular
+from heuncli.spec.couplings import Cam
+from heuncli.spec.models import Spec
+
+MOST = 400  # places of a line
+ROUND = 36  # of a roller
+
+
+def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
+    """The closed outlines (n, 3) of the discs that a body is, and of the rollers that it has."""
+    for given in spec.couplings.values():
+        if isinstance(given, Cam) and given.radius and spec.joints[given.follower].b == body:
+            axis = np.array(spec.joints[given.shaft].axis)
+            arm = given.radius * np.array(perpendicular(axis / np.sqrt(axis @ axis)))
+            phi = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)[:, None]
+            yield np.array(given.at) + np.cos(phi) * arm[0] + np.sin(phi) * arm[1]
+        if not isinstance(given, Cam) or spec.joints[given.shaft].b != body:
+            continue
+        joints = [joint(spec.joints[name], 0, 1, False) for name in (given.shaft, given.follower)]
+        (row,) = cam_rows(given, 0, joints[0], 1, joints[1])
+        own = flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
+        turns = round(2.0 * np.pi / float(own.angles[-1] - own.angles[0]))
+        part = own.places[:: max(1, turns * len(own.places) // MOST)]
+        around = [part @ about(joints[0].axis, -k * 2.0 * np.pi / turns).T for k in range(turns)]
+        line = np.concatenate([*around, own.places[:1]]) + joints[0].q
+        yield np.asarray(line)
+
+
+def paths_of(spec: Spec, body: str) -> Iterator[Array]:
+    """The lines (n, 3) along which points run that are fixed in a body, or in the ground."""
+    for own in spec.joints.values():
+        if own.path is not None and own.a == body:
+            s = own.path.looked_at
+            yield np.array(own.p) + own.path.at(s[:: max(1, len(s) // MOST)])[0]

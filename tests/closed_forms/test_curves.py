@@ -1,0 +1,195 @@
+"""A body whose point runs along a path: beads on wires with known motions and forces, and what paths refuse."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from heuncli.errors import SolveError, SpecError
+from heuncli.expressions.curves import fit
+from heuncli.expressions.paths import cusp, path_of
+from heuncli.results import Array
+from tests.shared.cams import table
+from tests.shared.scenes import near, solved
+
+PARABOLA = (
+    "{x: [-2, -1, 0, 1, 2], y: [-2, -1, 0, 1, 2], interpolation: cubic}",
+    "{x: [-2, -1, 0, 1, 2], y: [2, 0.5, 0, 0.5, 2], interpolation: cubic}",
+)
+
+
+def bead(
+    x: str, y: str, z: str, start: str, times: str, from_: str = "ground.O", more: str = "", head: str = ""
+) -> str:
+    """A bead of 2 kg on a wire; x, y, z: tables, or numbers."""
+    tables = {name: entry for name, entry in (("tx", x), ("ty", y), ("tz", z)) if entry.startswith("{")}
+    keys = ", ".join(
+        f"{a}: {t if e.startswith('{') else e}" for a, t, e in zip("xyz", ("tx", "ty", "tz"), (x, y, z), strict=True)
+    )
+    lines = "\n".join(f"  {name}: {entry}" for name, entry in tables.items())
+    return f"""
+heun: 1
+{head}
+gravity: [0, 0, -9.81]
+tables:
+{lines}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  bead: {{mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {{P: [0, 0, 0]}}}}
+{more}
+joints:
+  wire: {{type: curve, from: {from_}, to: bead.P, {keys}, initial: {{{start}}}}}
+{MORE_JOINTS.get(from_, "")}
+analysis: {{times: {times}, tolerance: 1e-11}}
+"""
+
+
+MORE_JOINTS = {
+    "arm.O": "  hub: {type: pin, from: ground.O, to: arm.O, axis: [0, 0, 1], initial: {angle: 0.3, rate: 4}}"
+}
+
+
+def test_a_bead_on_a_parabola() -> None:
+    """z = x^2/2 is a cubic table exactly. Let go at x = 1: the force is m (g cos + v^2 / r), v^2 = 2 g (z0 - z)."""
+    results = solved(bead(*PARABOLA[:1], "0", PARABOLA[1], "travel: 1", "[0, 0.2, 0.4, 0.7, 1.1]"))
+    x = results.coordinates["wire"]["travel"]
+    steep = 1.0 / np.sqrt(1.0 + x * x)
+    wanted = 2.0 * (9.81 * steep + 9.81 * (1.0 - x * x) * steep**3)
+    force = results.joints["wire"]["force"]
+    near(np.sqrt(np.sum(force * force, axis=1)), wanted, 40.0, 1e-9)
+    near(force[:, 0] / force[:, 2], -x, 2.0, 1e-9)
+    speed = results.coordinates["wire"]["speed"]
+    near(speed**2 * (1.0 + x * x), 9.81 * (1.0 - x * x), 10.0, 1e-9)
+    near(results.bodies["bead"]["position"], np.stack([x, 0.0 * x, 0.5 * x * x], axis=1), 1.0, 1e-12)
+
+
+def test_the_number_of_the_theory() -> None:
+    """manual/theory.md, number 14: a bead of 1 kg that was let go at x = 1, where it passes x = .4."""
+    speed = math.sqrt(9.81 * (1.0 - 0.4**2) / (1.0 + 0.4**2))
+    text = bead(*PARABOLA[:1], "0", PARABOLA[1], f"travel: 0.4, speed: {-speed}", "[0, 0.01]")
+    force = solved(text.replace("mass: 2", "mass: 1")).joints["wire"]["force"][0]
+    assert math.sqrt(force @ force) == pytest.approx(15.704062651007572, rel=1e-9)
+
+
+def cycloid(s: Array) -> tuple[Array, Array]:
+    """x and z over the way along a cycloid from its lowest place, r = 1: s = 4 sin(angle/2)."""
+    half = np.arcsin(s / 4.0)
+    return 2.0 * half + np.sin(2.0 * half), 1.0 - np.cos(2.0 * half)
+
+
+@pytest.mark.parametrize("start", [0.4, 1.7])
+def test_a_cycloid_is_isochronous(start: float) -> None:
+    """s = s0 cos(w t), w^2 = g / 4 r, however far it is let go."""
+    x, z = (table(lambda s, i=i: cycloid(s)[i], -2.4, 2.4, 80) for i in (0, 1))
+    w = math.sqrt(9.81 / 4.0)
+    results = solved(bead(x, "0", z, f"travel: {start}", "[0, 0.5, 1, 2.0, 4.0]"))
+    near(results.coordinates["wire"]["travel"], start * np.cos(w * results.time), start, 1e-5)
+
+
+def test_a_helix() -> None:
+    """Down a helix of radius r and rise c by a unit of the way: along it the acceleration is g c, m v^2 k across."""
+    r, n = 0.5, 2.0
+    length = math.hypot(r * n, 0.3)
+    x, y = (table(lambda s, f=f: r * f(n * s / length), 0.0, 2.4, 160) for f in (np.cos, np.sin))
+    z = table(lambda s: -0.3 * s / length, 0.0, 2.4, 2)
+    results = solved(bead(x, y, z, "travel: 0.5", "[0, 0.5, 1.0]"))
+    a = 9.81 * 0.3 / length
+    s = 0.5 + 0.5 * a * results.time**2
+    near(results.coordinates["wire"]["travel"], s, 3.0, 1e-7)
+    inward = 2.0 * r * (n / length) ** 2 * (a * results.time) ** 2
+    upright = 2.0 * 9.81 * r * n / length
+    force = results.joints["wire"]["force"]
+    near(np.sqrt(np.sum(force * force, axis=1)), np.hypot(inward, upright), 30.0, 1e-4)
+
+
+def test_a_closed_ring() -> None:
+    """A bead on an upright ring is a pendulum; its travel counts on as it goes round and round."""
+    ring = [table(f, 0.0, 2.0 * math.pi, 90, f", period: {2.0 * math.pi}") for f in (np.sin, lambda s: -np.cos(s))]
+    results = solved(bead(ring[0], "0", ring[1], "travel: 0, speed: 8", "[0, 0.4, 0.9, 2.3]"))
+    s, speed = results.coordinates["wire"]["travel"], results.coordinates["wire"]["speed"]
+    assert s[-1] > 4.0 * math.pi
+    near(speed**2, 64.0 - 2.0 * 9.81 * (1.0 - np.cos(s)), 64.0, 1e-5)
+
+
+def test_a_straight_path_is_a_line() -> None:
+    """On an arm that turns: the same motion and forces as of a joint `line`, whose point is flung outward."""
+    arm = "  arm: {mass: 3, center: [0.2, 0, 0], inertia: [0.1, 0.2, 0.3], points: {O: [0, 0, 0]}}"
+    straight = "{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}"
+    text = bead(straight, "0", "0", "travel: 0.4", "[0, 0.1, 0.25]", "arm.O", arm)
+    found = solved(text)
+    line = "{type: line, from: arm.O, to: bead.P, axis: [1, 0, 0]}"
+    as_line = text.replace(text[text.index("{type: curve") : text.index("}}", text.index("{type: curve")) + 2], line)
+    as_line = as_line.replace("points: {P: [0, 0, 0]}}", "points: {P: [0, 0, 0]}, near: {position: [0.4, 0, 0]}}")
+    wanted = solved(
+        as_line.replace("position: [0.4, 0, 0]", f"position: [{0.4 * math.cos(0.3)}, {0.4 * math.sin(0.3)}, 0]")
+    )
+    for joint in ("hub", "wire"):
+        near(found.joints[joint]["force"], wanted.joints[joint]["force"], 50.0, 1e-8)
+    near(found.bodies["bead"]["position"], wanted.bodies["bead"]["position"], 1.0, 1e-9)
+    near(found.coordinates["hub"]["rate"], wanted.coordinates["hub"]["rate"], 4.0, 1e-9)
+
+
+def test_in_the_plane_as_in_space() -> None:
+    """A scene declared planar moves by its own kernel."""
+    swapped = bead(*PARABOLA, "0", "travel: 1", "[0, 0.3, 0.8]").replace("[0, 0, -9.81]", "[0, -9.81, 0]")
+    space, plane = solved(swapped), solved(swapped.replace("heun: 1", "heun: 1\nspace: planar"))
+    near(plane.joints["wire"]["force"], space.joints["wire"]["force"], 40.0, 1e-9)
+    near(plane.coordinates["wire"]["travel"], space.coordinates["wire"]["travel"], 1.0, 1e-9)
+
+
+def test_the_end_of_a_path() -> None:
+    """A run that comes there is told so, with what the path covers."""
+    ramp = "{x: [0, 1, 2, 3], y: [0, -1, -2, -3], interpolation: cubic}"
+    with pytest.raises(SolveError, match="runs off its path, which covers travel from 0 to 3 m") as told:
+        solved(bead("0.1", "0", ramp, "travel: 1", "[0, 2]"))
+    assert told.value.problems[0].code == "path-ends"
+
+
+@pytest.mark.parametrize(("x", "z", "start", "message"), [
+    ("0", "1", "travel: 0", "a path without a table"),
+    ("{x: [0, 1, 2], y: [0, 1, 2], interpolation: linear}", "0", "travel: 0", "it does not bend evenly"),
+    ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "0", "travel: 4", "travel 4 is off the path"),
+    ("{x: [-1, 0, 1], y: [1, 0, 1], interpolation: cubic}", "0", "travel: 0.5", "stands still at travel 0"),
+    ("{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}", "{x: [5, 6, 7], y: [0, 1, 2], interpolation: cubic}",
+     "travel: 1", "no travel in common"),
+    ("{x: [0, 1, 2, 3], y: [0, 1, 0.5, 1], interpolation: cubic, period: 3}", "0", "travel: 1", "must agree"),
+    ("nothing", "0", "travel: 1", "expected the name of a table"),
+])  # fmt: skip
+def test_what_is_no_path(x: str, z: str, start: str, message: str) -> None:
+    """Told with its place, before anything is solved."""
+    text = bead(x, "0", z, start, "[0, 1]") if x.startswith("{") or z.startswith("{") else None
+    text = text or bead("{x: [0, 1], y: [0, 1]}", x, z, start, "[0, 1]").replace("x: tx, ", "")
+    with pytest.raises(SpecError, match=message):
+        solved(text)
+
+
+def test_two_paths_under_one_body() -> None:
+    """A closed chain of two such joints is refused by name, with what to do."""
+    straight = "{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}"
+    text = bead(straight, "0", "0", "travel: 1", "[0, 1]")
+    second = "  second: {type: curve, from: ground.O, to: {body: bead, at: [0.5, 0, 0]}, x: tx}\nanalysis"
+    with pytest.raises(SolveError, match="runs along a path, and every other joint of a closed chain"):
+        solved(text.replace("analysis", second))
+
+
+SHAPES: tuple[Callable[[Array], Array], ...] = (np.cos, np.sin, lambda s: 0.2 * s)
+
+
+def test_the_nearest_place() -> None:
+    """Of points beside a helix, about its axis and beyond its ends; and of one between two turns that lie close."""
+    s = np.linspace(0.0, 12.0, 241)
+    path = path_of([fit("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in SHAPES])
+    at = np.array([0.3, 3.0, 7.123, 11.9])
+    r, slope, _ = path.at(at)
+    across = np.cross(slope, [0.3, -0.2, 1.0])
+    near(path.nearest(r + 0.05 * across), at, 12.0, 1e-9)
+    near(path.nearest(r), at, 12.0, 1e-12)
+    near(path.nearest(np.array([[3.0, 0.0, -9.0]])), 0.0, 12.0, 1e-12)
+    assert cusp(path) is None
+    bound = path.greatest
+    close = np.linspace(0.0, 12.0, 5000)
+    for found, most in zip(path.at(close), bound, strict=True):
+        assert np.sqrt(np.sum(found * found, axis=1)).max() <= most * (1.0 + 1e-14)
