@@ -152,8 +152,8 @@ EQUAL_COMPONENTS = (
 MESH_DIGITS = 2.0**-21  # of the largest coordinate: eight steps of a float32, which is what files of meshes hold
 PARALLEL = 1e-9  # sine between directions typed with ten digits: below, they are one line
 OUTLINE_PRINCIPAL = 1e-4  # the same of a mesh: its corners have the digits of a float32, its arcs are chords
-# of the area times the cube of its extent: third moments of an outline that is the same turned by 180 degrees; as chords
-# of arcs leave, while a channel has some 1e-2
+# of the area times the cube of its extent: third moments of an outline that is the same turned by 180 degrees; as
+# chords of arcs leave, while a channel has some 1e-2
 OUTLINE_SYMMETRIC = 1e-3
 PRINCIPAL = 1e-9  # I12 of sqrt(I1 I2): typed lengths; the neutral axis turns by less than that over 1 - I1/I2
 UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as typed quaternions leave

@@ -149,8 +149,8 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     if joint.path is not None:
         return Problem(
             "over-driven",
-            f"joints.{joint.name} runs along a path, and every other joint of a closed chain through it does so, too, or "
-            "is driven, limited or named",
+            f"joints.{joint.name} runs along a path, and every other joint of a closed chain through it does so, or is "
+            "driven, limited or named",
             hint="a body on two paths: a second body on the second, with a ball or pin between the two",
         )
     what = "is driven" if joint.drive else "is named in an expression"
