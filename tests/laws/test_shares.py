@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import heuncli
 from heuncli.results import Results
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
@@ -457,3 +458,20 @@ def test_shares_of_couplings_add_up(name: str) -> None:
         largest = np.max(np.abs(parts))
         assert largest > 1.0
         np.testing.assert_allclose(np.sum(parts, axis=0), coupling["force"], rtol=0, atol=1e-9 * largest)
+
+
+def test_shares_of_a_rope_s_tensions_are_told() -> None:
+    """Over a heavy sheave that holds it: M g (1 - (M - m)/(M + m + J/R^2)) before it, from weight alone; as CSV, too."""
+    scene = """{heun: 1, space: planar, gravity: [0, -10], ground: {points: {O: [0, 5], a: [-0.5, 0], b: [0.5, 0]}},
+      bodies: {sheave: {mass: 1, center: [0, 0], inertia: 1, points: {hub: [0, 0]}},
+        cage: {mass: 3, center: [0, 0], inertia: 1, points: {top: [0, 0]}},
+        weight: {mass: 1, center: [0, 0], inertia: 1, points: {top: [0, 0]}}},
+      joints: {axle: {type: pin, from: ground.O, to: sheave.hub},
+        rails: {type: slide, from: ground.a, to: cage.top, axis: [0, 1]},
+        guide: {type: slide, from: ground.b, to: weight.top, axis: [0, 1]}},
+      couplings: {hoist: {type: rope,
+        through: [cage.top, {sheave: sheave.hub, radius: 0.5, slip: none}, weight.top]}}, analysis: {type: state}}"""
+    found = heuncli.solve(text=scene, by_cause=True)
+    assert float(found["couplings.hoist.shares.gravity.tension"]) == pytest.approx(30 * (1 - 2 / 8), rel=1e-12)
+    assert float(found["couplings.hoist.shares.gravity.last_tension"]) == pytest.approx(10 * (1 + 2 / 8), rel=1e-12)
+    assert "couplings.hoist.shares.gravity.tension" in found.to_csv()
