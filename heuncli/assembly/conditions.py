@@ -139,7 +139,7 @@ def at_place(d: JointCondition, path: Path, s: float, hold: Hold) -> JointCondit
 
 
 def on_tangent(d: JointCondition, x: Array, R: Array) -> JointCondition:
-    """What a joint asks in a pose: along a path to stay on the tangent at the nearest place, else what it always asks."""
+    """What a joint asks in a pose: along a path to stay on its tangent at the nearest place, else as always."""
     if d.path is None:
         return d
     D = R[d.a].T @ (x[d.b] + R[d.b] @ d.q - x[d.a]) - d.p

@@ -22,7 +22,7 @@ from heuncli.balancing.load_torque import torques
 from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import Bushing, JointLoad, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import BushingLoad, JointLoad, Load, Mechanism, PairLoad
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -169,7 +169,7 @@ def unplaced(load: Load) -> Iterator[str]:
         yield "has damping"
     if isinstance(load, PairLoad) and load.damping:
         yield "has damping"
-    if isinstance(load, Bushing) and (load.shift.damping.any() or load.turn.damping.any()):
+    if isinstance(load, BushingLoad) and (load.shift.damping.any() or load.turn.damping.any()):
         yield "has damping"
     values: tuple[Expression, ...] = load.values
     if any(value.time_dependent for value in values):

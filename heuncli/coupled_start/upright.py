@@ -13,9 +13,9 @@ from heuncli.tree.starts import pose
 def require_upright(mechanism: Mechanism, start: Assembly) -> None:
     """Raise SolveError [does-not-fit] for discs whose axles stand on their planes at the start."""
     for coupling in mechanism.couplings:
-        if coupling.given.type != "wheel":
+        part = coupling.rows[0].parts[0] if coupling.rows else None  # of a rope they are found later
+        if part is None or part.kind != "touches":
             continue
-        part = coupling.rows[0].parts[0]
         n, k = pose(start, part.a)[1] @ part.e, pose(start, part.b)[1] @ part.g
         across = np.cross(n, k)
         if float(across @ across) <= 1.0 - tolerances.ALONG_SQUARED:

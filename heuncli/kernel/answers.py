@@ -15,10 +15,11 @@ if not cython.compiled:
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
-    from heuncli.kernel.scene import APART, CARRIES, LEANS, Body, Closure, Contact, Freedom, Instants, Load, Scene
+    from heuncli.kernel.scene import APART, CARRIES, LEANS, Body, Closure, Contact, Freedom, Load, Scene
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import balance
+    from heuncli.kernel.values import Instants
 
 
 def put_matrix(out: cython.p_double, at: cython.Py_ssize_t, R: Mat3) -> cython.Py_ssize_t:

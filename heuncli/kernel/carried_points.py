@@ -9,8 +9,9 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, centripetal, rotate, sub
-    from heuncli.kernel.scene import Body, Carried, Scene
+    from heuncli.kernel.scene import Body, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import Carried
 
 
 def carried(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Carried:

@@ -34,23 +34,8 @@ if not cython.compiled:
     from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.rolling import rolling_row
-    from heuncli.kernel.scene import (
-        ARC,
-        CAM,
-        DOT,
-        GUIDE,
-        MESH,
-        ROD,
-        STRAND,
-        SUM,
-        TURN,
-        WOUND,
-        Body,
-        Carried,
-        Closure,
-        Counter,
-        Scene,
-    )  # fmt: skip
+    from heuncli.kernel.scene import (ARC, CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TURN, WOUND, Body, Closure, Counter, Scene)
+    from heuncli.kernel.values import (Carried)
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push

@@ -30,11 +30,11 @@ if not cython.compiled:
         Body,
         Counter,
         Load,
-        PointMotion,
         Scene,
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import direction_of, point_of, push
+    from heuncli.kernel.values import PointMotion
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:

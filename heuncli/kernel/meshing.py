@@ -15,9 +15,10 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, sub
     from heuncli.kernel.carried_points import carried, place_of
-    from heuncli.kernel.scene import Carried, Closure, Scene
+    from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import direction_of
+    from heuncli.kernel.values import Carried
 
 
 def mesh_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:

@@ -62,4 +62,4 @@ MODULES = (
 )
 
 # Structs and inlined functions, which the compiled modules take into themselves.
-DECLARED = ("algebra", "programs", "scene", "stepping")
+DECLARED = ("algebra", "programs", "scene", "values", "stepping")

@@ -14,8 +14,9 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add_scaled, rotate, scaled
     from heuncli.kernel.libm import NAN, floor
-    from heuncli.kernel.scene import Freedom, PathPoint, Piece, Scene
+    from heuncli.kernel.scene import Freedom, PathPiece, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import PathPoint
 
 
 def run_along(scene: cython.pointer[Scene], parent: cython.int, freedom: cython.pointer[Freedom]) -> Vec3:
@@ -39,7 +40,7 @@ def path_point(
         q = q - period * floor((q - first) / period)
     elif not (q >= first and q <= scene.pieces[path + count].begin):
         q = NAN
-    piece: cython.pointer[Piece] = cython.address(scene.pieces[path + piece_at(scene, path, count, q)])
+    piece: cython.pointer[PathPiece] = cython.address(scene.pieces[path + piece_at(scene, path, count, q)])
     h: cython.double = q - piece.begin
     r: Vec3 = add_scaled(piece.c0, h, add_scaled(piece.c1, h, add_scaled(piece.c2, h, piece.c3)))
     slope: Vec3 = add_scaled(piece.c1, h, add_scaled(scaled(2.0, piece.c2), 3.0 * h, piece.c3))

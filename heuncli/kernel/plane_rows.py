@@ -16,8 +16,9 @@ if not cython.compiled:
     from math import sqrt
 
     from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.scene import DOT, GUIDE, Body, CarriedInPlane, Closure, Freedom, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Freedom, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import CarriedInPlane
 
 
 def turned_in_plane(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:

@@ -31,10 +31,11 @@ if not cython.compiled:
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.load_ranges import acceleration_of, between, load_at_end, range_of_load
     from heuncli.kernel.programs import Bounds, Jet, Span
-    from heuncli.kernel.scene import OF_LOAD, SHIFT, Body, Freedom, Load, PointMotion, Scene, Variable
+    from heuncli.kernel.scene import OF_LOAD, SHIFT, Body, Freedom, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Orbits, Run
     from heuncli.kernel.tree import coordinates, kinematics, point_of
+    from heuncli.kernel.values import PointMotion
 
 # At an instant
 

@@ -27,7 +27,7 @@ if not cython.compiled:
         Lent,
         Limits,
         Load,
-        Piece,
+        PathPiece,
         Scene,
         Variable,
         Watch,
@@ -73,7 +73,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.closures = cython.cast(cython.pointer[Closure], memory.rows(tables["closures"], cython.sizeof(Closure)))
         scene.parts = cython.cast(cython.pointer[Closure], memory.rows(tables["parts"], cython.sizeof(Closure)))
         scene.counters = cython.cast(cython.pointer[Counter], memory.rows(tables["counters"], cython.sizeof(Counter)))
-        scene.pieces = cython.cast(cython.pointer[Piece], memory.rows(tables["pieces"], cython.sizeof(Piece)))
+        scene.pieces = cython.cast(cython.pointer[PathPiece], memory.rows(tables["pieces"], cython.sizeof(PathPiece)))
         scene.variables = cython.cast(
             cython.pointer[Variable], memory.rows(tables["variables"], cython.sizeof(Variable))
         )
@@ -99,7 +99,7 @@ def take_tables(scene: cython.pointer[Scene], memory: Memory, tables: dict[str, 
         scene.closures = [Closure(row) for row in tables["closures"].tolist()]
         scene.parts = [Closure(row) for row in tables["parts"].tolist()]
         scene.counters = [Counter(row) for row in tables["counters"].tolist()]
-        scene.pieces = [Piece(row) for row in tables["pieces"].tolist()]
+        scene.pieces = [PathPiece(row) for row in tables["pieces"].tolist()]
         scene.variables = [Variable(row) for row in tables["variables"].tolist()]
         scene.lents = [Lent(row) for row in tables["lents"].tolist()]
         scene.islands = [Island(row) for row in tables["islands"].tolist()]

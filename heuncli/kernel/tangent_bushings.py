@@ -11,11 +11,12 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, scaled, sub
     from heuncli.kernel.bushings import moment_along, rate_of_vector, times, varying
     from heuncli.kernel.loads import given_vector
-    from heuncli.kernel.scene import BUSHING_SHIFT, BushingTangent, Load, Scene
+    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import axes_of
     from heuncli.kernel.tangent_motion import swung
     from heuncli.kernel.tangent_strains import strain_along
+    from heuncli.kernel.values import BushingTangent
 
 
 def bushing_along(

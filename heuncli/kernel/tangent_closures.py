@@ -17,22 +17,7 @@ if not cython.compiled:
     from heuncli.kernel.cams import cam_along
     from heuncli.kernel.carried_points import carried, place_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import (
-        CAM,
-        DOT,
-        GUIDE,
-        MESH,
-        ROD,
-        STRAND,
-        SUM,
-        TOUCHES,
-        TURN,
-        Closure,
-        LoadTangent,
-        MotionTangent,
-        RowTangent,
-        Scene,
-    )
+    from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, ROD, STRAND, SUM, TOUCHES, TURN, Closure, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_meshing import mesh_along
@@ -41,6 +26,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tangent_sheaves import strand_along
     from heuncli.kernel.tree import direction_of
+    from heuncli.kernel.values import LoadTangent, MotionTangent, RowTangent
 
 
 def closures_along(scene: cython.pointer[Scene]) -> cython.void:

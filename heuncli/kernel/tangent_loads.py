@@ -31,11 +31,7 @@ if not cython.compiled:
         TURN_SPRING,
         Body,
         BodyTangent,
-        BushingTangent,
-        LineTangent,
         Load,
-        LoadTangent,
-        PointMotion,
         Scene,
     )
     from heuncli.kernel.shadow import cython
@@ -43,6 +39,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_strains import line_along
     from heuncli.kernel.tree import direction_of, point_of
+    from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion
 
 
 def loads_along(scene: cython.pointer[Scene]) -> cython.double:

@@ -11,10 +11,11 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, cross, dot, sub
     from heuncli.kernel.carried_points import carried
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import Closure, MotionTangent, RowTangent, Scene
+    from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.values import MotionTangent, RowTangent
 
 
 def mesh_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

@@ -23,11 +23,11 @@ if not cython.compiled:
         BodyTangent,
         Freedom,
         FreedomTangent,
-        PointMotion,
         Scene,
         Variable,
     )
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import PointMotion
 
 
 def move_along(scene: cython.pointer[Scene], y: cython.p_double, along: cython.p_double) -> cython.void:

@@ -9,8 +9,9 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, centripetal, cross, sub
-    from heuncli.kernel.scene import Body, BodyAtState, BodyTangent, MotionTangent, Scene
+    from heuncli.kernel.scene import Body, BodyAtState, BodyTangent, Scene
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import MotionTangent
 
 
 def acceleration_at(scene: cython.pointer[Scene], body: cython.int, x: Vec3) -> Vec3:

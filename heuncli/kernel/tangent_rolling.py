@@ -16,23 +16,18 @@ if not cython.compiled:
     from heuncli.kernel.carried_points import carried
     from heuncli.kernel.loads import omega_of
     from heuncli.kernel.rolling import along_moving, centre_moving, cross_moving, direction_moving
-    from heuncli.kernel.scene import (
-        BALL_ROLLS,
-        BALL_TOUCHES,
-        ROLLS,
-        ROLLS_ASIDE,
-        Closure,
+    from heuncli.kernel.scene import BALL_ROLLS, BALL_TOUCHES, ROLLS, ROLLS_ASIDE, Closure, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_points import acceleration_at, carried_along
+    from heuncli.kernel.values import (
         MotionTangent,
         PointMotion,
         RowTangent,
-        Scene,
         VectorRate,
         VectorRateTangent,
         WheelTangent,
     )
-    from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tangent_motion import omega_along, point_along, swung
-    from heuncli.kernel.tangent_points import acceleration_at, carried_along
 
 
 def rolling_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

@@ -11,11 +11,12 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, scaled, sub
     from heuncli.kernel.carried_points import carried
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import Closure, MotionTangent, RowTangent, Scene, Strand, StrandRate
+    from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import strand_of, strand_rate
     from heuncli.kernel.tangent_motion import omega_along, point_along
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
+    from heuncli.kernel.values import MotionTangent, RowTangent, Strand, StrandRate
 
 
 def strand_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> RowTangent:

@@ -14,19 +14,11 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_scaled, dot, norm, rotate, rotate_back, scaled, sub
     from heuncli.kernel.bushings import rate_of_vector
-    from heuncli.kernel.scene import (
-        ALONG_LINE,
-        BUSHING_SHIFT,
-        OF_LOAD,
-        LineTangent,
-        Load,
-        PointMotion,
-        Scene,
-        Variable,
-    )
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, OF_LOAD, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import axes_of, component_of, parting_of, span_of, strain_of
     from heuncli.kernel.tangent_motion import point_along, swung, turn_along_of
+    from heuncli.kernel.values import LineTangent, PointMotion
 
 
 def variables_along(scene: cython.pointer[Scene]) -> cython.void:

@@ -69,20 +69,10 @@ if not cython.compiled:
         upward_in_plane,
     )
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.scene import (
-        OF_LOAD,
-        SHIFT,
-        TURN_IN_BODY,
-        TURN_IN_PARENT,
-        Body,
-        Freedom,
-        Lent,
-        PointMotion,
-        Scene,
-        Variable,
-    )
+    from heuncli.kernel.scene import OF_LOAD, SHIFT, TURN_IN_BODY, TURN_IN_PARENT, Body, Freedom, Lent, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import of_load
+    from heuncli.kernel.values import PointMotion
 
 
 def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:

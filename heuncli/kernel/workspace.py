@@ -29,11 +29,12 @@ if not cython.compiled:
     from heuncli.kernel.programs import FREE, HELD, TAKEN
     from heuncli.kernel.response import configure, evaluate, must_choose_anew, settle
     from heuncli.kernel.room import make_room, take_numbers, take_tables
-    from heuncli.kernel.scene import Instants, Scene
+    from heuncli.kernel.scene import Scene
     from heuncli.kernel.selection import select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Tangent
     from heuncli.kernel.tree import factor_tree, kinematics
+    from heuncli.kernel.values import Instants
 
 
 class Workspace:

@@ -15,7 +15,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, Bushing, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
+from heuncli.mechanism.model import GROUND, BushingLoad, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -120,7 +120,7 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
         to, from_ = _ends(mechanism, load, joint, on_to, rows["from_at"][:, 0])
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
-        strain = rows["strain"] if isinstance(load, Bushing) else None
+        strain = rows["strain"] if isinstance(load, BushingLoad) else None
         loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
     return loads
 
@@ -153,7 +153,7 @@ def _ends(
         return ActionEnd(load.body, on_to, point), None
     if isinstance(load, PairLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
-    if isinstance(load, Bushing):
+    if isinstance(load, BushingLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, load.p, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)

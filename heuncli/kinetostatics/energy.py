@@ -12,7 +12,7 @@ from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import Bushing, JointLoad, Mechanism, PairLoad
+from heuncli.mechanism.model import BushingLoad, JointLoad, Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
@@ -33,13 +33,13 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
         elif isinstance(load, JointLoad) and load.kind == "turn_spring":
             potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.angle)
-        elif isinstance(load, Bushing):
+        elif isinstance(load, BushingLoad):
             potential = potential + bushing_energy(load, applied)
     work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 
 
-def bushing_energy(load: Bushing, applied: AppliedLoad) -> Array:
+def bushing_energy(load: BushingLoad, applied: AppliedLoad) -> Array:
     """Of springs and preloads; what hangs on a deflection by a table is work."""
     assert applied.strain is not None
     found = np.zeros(len(applied.strain))

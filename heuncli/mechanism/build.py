@@ -15,7 +15,7 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
-    Bushing,
+    BushingLoad,
     Directed,
     Elastic,
     Joint,
@@ -237,14 +237,14 @@ def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[i
             raise TypeError("a distributed load is two loads")
 
 
-def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> Bushing:
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
     """Six springs and dampers."""
 
     def arrays(of: m.Elastic[m.Vec]) -> Elastic:
         return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
 
     a, b = f.from_, f.to
-    return Bushing(
+    return BushingLoad(
         name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
         np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
     )  # fmt: skip

@@ -161,7 +161,7 @@ class JointLoad:
 
 
 @record
-class Bushing:
+class BushingLoad:
     """Six springs and dampers between two bodies; ON b at its point q, opposite on a at the same place.
 
     p, q: the points on the bodies a and b, their axes [m]; frame (3, 3): its axes in a, as columns; to_frame: those in
@@ -196,7 +196,7 @@ class Bushing:
         return (self.a, self.p), (self.b, self.q)
 
 
-Load = PointLoad | PairLoad | JointLoad | Bushing
+Load = PointLoad | PairLoad | JointLoad | BushingLoad
 
 
 @record
@@ -250,7 +250,7 @@ class Mechanism:
             count = 1
             if isinstance(load, JointLoad):
                 count = len(JOINTS[self.joints[load.joint].kind].moved_by(load.kind))
-            elif isinstance(load, Bushing):
+            elif isinstance(load, BushingLoad):
                 count = 2
             yield load, slice(at, at + count)
             at += count

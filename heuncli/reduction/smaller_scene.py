@@ -18,7 +18,7 @@ from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
-    Bushing,
+    BushingLoad,
     Joint,
     Load,
     Mechanism,
@@ -145,7 +145,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
     if isinstance(load, PairLoad):
         a, b = parts.at(load.a), parts.at(load.b)
         return replace(load, a=number[a.body], p=a.point(load.p), b=number[b.body], q=b.point(load.q))
-    if isinstance(load, Bushing):
+    if isinstance(load, BushingLoad):
         a, b = parts.at(load.a), parts.at(load.b)
         return replace(
             load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,

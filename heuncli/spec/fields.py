@@ -106,7 +106,7 @@ class OrTable(Si):
         return super().read(value, info)
 
 
-class Curve(ReadValue):
+class CurveValue(ReadValue):
     """A motor's torque over its speed: the name of a table, or an expression in `rate`."""
 
     def read(self, value: Any, info: Any) -> Expression:
@@ -281,7 +281,7 @@ OwnSpringForce = Annotated[Expression, InOwn(u.FORCE, {"length": "length", "rate
 OwnTurnTorque = Annotated[Expression, InOwn(u.MOMENT, {"angle": "angle", "rate": "rate"})]
 OwnDamperTorque = Annotated[Expression, InOwn(u.MOMENT, {"rate": "rate"})]
 OwnDamperForce = Annotated[Expression, InOwn(u.FORCE, {"rate": "speed", "speed": "speed"})]
-MotorCurve = Annotated[Expression, Curve(u.MOMENT)]
+MotorCurve = Annotated[Expression, CurveValue(u.MOMENT)]
 ShiftLaw = Annotated[Any, OrTable(u.STIFFNESS, "deflection")]
 TurnLaw = Annotated[Any, OrTable(u.TURNING_STIFFNESS, "turn")]
 NumberInTime = Annotated[Expression, InTime(u.NUMBER)]

@@ -273,8 +273,8 @@ JOINTS: dict[str, type[JointEntry]] = {
     "weld": WeldJoint,
     "line": LineJoint,
     "plane": PlaneJoint,
-    "rod": RodJoint,
     "curve": CurveJoint,
+    "rod": RodJoint,
 }
 
 

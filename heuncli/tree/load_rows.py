@@ -11,7 +11,7 @@ from heuncli import tolerances
 from heuncli.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.joint_kinds import JOINTS
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, Bushing, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.shapes.rotations import perpendicular
@@ -86,7 +86,7 @@ def with_loads(frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms
     for load, rows in mechanism.load_rows():
         for i, e in enumerate(load.values):
             constant = 0.0 if e.constant is None else e.constant
-            if isinstance(load, Bushing):
+            if isinstance(load, BushingLoad):
                 vector[rows.start + i // 3, i % 3] = constant
             else:
                 vector[rows, i] = constant
@@ -116,7 +116,7 @@ class _LoadRows:
                 self._point_load(load, values)
             elif isinstance(load, PairLoad):
                 self._pair_load(load, values)
-            elif isinstance(load, Bushing):
+            elif isinstance(load, BushingLoad):
                 self._bushing(load, own)
             else:
                 self._joint_load(load, values)
@@ -143,7 +143,7 @@ class _LoadRows:
             )
         )
 
-    def _bushing(self, load: Bushing, programs: tuple[Program, ...]) -> None:
+    def _bushing(self, load: BushingLoad, programs: tuple[Program, ...]) -> None:
         """Two rows: of the shift, of the turn."""
         parts = (kernel.BUSHING_SHIFT, load.shift, programs[:3]), (kernel.BUSHING_TURN, load.turn, programs[3:])
         for kind, elastic, own in parts:

@@ -445,7 +445,7 @@ class _Builder:
             "bodies": table_of(kernel.Body, self.body_rows),
             "freedoms": table_of(kernel.Freedom, self.freedom_rows),
             "closures": table_of(kernel.Closure, self.closure_rows, places),
-            "pieces": table_of(kernel.Piece, self.pieces),
+            "pieces": table_of(kernel.PathPiece, self.pieces),
             "parts": table_of(kernel.Closure, self.part_rows),
             "counters": table_of(kernel.Counter, self._counter_rows()),
             "contacts": table_of(kernel.Contact, self.one_sided),

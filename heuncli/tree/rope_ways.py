@@ -60,7 +60,7 @@ class StrandLine:
 
 
 @record
-class Way:
+class RopeWay:
     """A way round the sheaves: sides, 1 counter-clockwise about each axis, 0 of points; the strands; angles of arcs."""
 
     sides: tuple[int, ...]
@@ -189,7 +189,7 @@ def angle_of_arc(x: Stay, side: int, before: Array, behind: Array) -> float:
     return angle if angle >= -tolerances.ON_AXIS else angle + 2.0 * math.pi
 
 
-def way_of(stays: Sequence[Stay], sides: tuple[int, ...]) -> Way | None:
+def way_of(stays: Sequence[Stay], sides: tuple[int, ...]) -> RopeWay | None:
     """The way round given sides; None where there is none."""
     strands = []
     for (a, side_a), (b, side_b) in pairwise(zip(stays, sides, strict=True)):
@@ -200,10 +200,10 @@ def way_of(stays: Sequence[Stay], sides: tuple[int, ...]) -> Way | None:
     inner = zip(stays[1:-1], sides[1:-1], strands[:-1], strands[1:], strict=True)
     arcs = (0.0, *(angle_of_arc(x, s, before.t, behind.t) for x, s, before, behind in inner), 0.0)
     length = sum(x.length for x in strands) + sum(x.radius * angle for x, angle in zip(stays, arcs, strict=True))
-    return Way(sides, tuple(strands), arcs, length)
+    return RopeWay(sides, tuple(strands), arcs, length)
 
 
-def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> Way:
+def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> RopeWay:
     """The way that a rope runs: past the sides that are named, else the shortest. Raises SolveError."""
     for k, (a, b) in enumerate(pairwise(stays)):
         if a.radius and b.radius and not parallel(a.normal, b.normal):
@@ -243,7 +243,7 @@ def up_in(mechanism: Mechanism) -> Array:
     return np.array([0.0, 1.0, 0.0]) if mechanism.planar else Z
 
 
-def fits(stays: Sequence[Stay], way: Way, k: int, up: Array) -> bool:
+def fits(stays: Sequence[Stay], way: RopeWay, k: int, up: Array) -> bool:
     """Whether the rope runs over, or under, a sheave as it was said to."""
     side = stays[k].given.side
     if side not in ("over", "under"):
@@ -259,7 +259,7 @@ def fits(stays: Sequence[Stay], way: Way, k: int, up: Array) -> bool:
 # The conditions
 
 
-def parts_between(start: Assembly, stays: Sequence[Stay], way: Way, first: int, last: int) -> tuple[CouplingPart, ...]:
+def parts_between(start: Assembly, stays: Sequence[Stay], way: RopeWay, first: int, last: int) -> tuple[CouplingPart, ...]:
     """The parts of the condition between two places where a rope is held."""
     count = last - first
     signed = [s * x.radius for s, x in zip(way.sides, stays, strict=True)]
@@ -308,7 +308,7 @@ def wound_part(start: Assembly, x: Stay, signed: float, t: Array, strand: int) -
     )
 
 
-def length_between(stays: Sequence[Stay], way: Way, first: int, last: int) -> float:
+def length_between(stays: Sequence[Stay], way: RopeWay, first: int, last: int) -> float:
     """How long the rope is between two places where it is held."""
     length = sum(way.strands[k].length for k in range(first, last))
     return length + sum(stays[k].radius * way.arcs[k] for k in range(first + 1, last))

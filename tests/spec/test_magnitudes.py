@@ -80,7 +80,7 @@ def test_masses_of_shapes_are_those_that_are_computed_with(name: str) -> None:
 
 
 def test_all_kinds_of_shapes_are_among_them() -> None:
-    assert {shape.type for shape in SOLIDS.values()} | {"point"} == set(fs.SHAPES)
+    assert {shape.type for shape in SOLIDS.values()} | {"point", "mesh"} == set(fs.SHAPES)
 
 
 def test_many_numbers_are_judged_as_one() -> None:

@@ -10,7 +10,7 @@ from heuncli.errors import Problem
 from heuncli.integration.diagnosis.turned_bushings import half_turned, turning
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.trajectory import Trajectory
-from heuncli.mechanism.model import Bushing
+from heuncli.mechanism.model import BushingLoad
 from heuncli.results import Array
 
 AT_ONCE = 10_000  # ends of steps that are looked at together
@@ -36,6 +36,6 @@ def turns_over(runner: Runner, run: Trajectory, horizon: float | None) -> Proble
     return None
 
 
-def turns(runner: Runner, run: Trajectory, times: Array, own: Sequence[tuple[Bushing, int]]) -> Array:
+def turns(runner: Runner, run: Trajectory, times: Array, own: Sequence[tuple[BushingLoad, int]]) -> Array:
     """The rotation vector of each bushing, (n_t, bushings, 3) [rad]."""
     return np.asarray(runner.answers_at(run, times).loads[:, [row for _, row in own]]["strain"])

@@ -13,7 +13,7 @@ from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import Bushing, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import BushingLoad, Load, Mechanism, PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
@@ -50,7 +50,7 @@ def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     if isinstance(load, PairLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
-    if not isinstance(load, Bushing):
+    if not isinstance(load, BushingLoad):
         return {}
     parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
     return {

@@ -7,7 +7,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import Bushing, PairLoad
+from heuncli.mechanism.model import BushingLoad, PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import record
 from heuncli.results import Array
@@ -131,7 +131,7 @@ def not_finite(scene: PreparedScene, recovered: Recovered, instant: int) -> list
 
     t, length = float(recovered.times[instant]), float(recovered.times[-1])
     problems = without_value(scene.mechanism, t, length, coordinates_at(scene.layout, recovered, instant))
-    if not problems and any(isinstance(load, Bushing) for load in scene.mechanism.loads):
+    if not problems and any(isinstance(load, BushingLoad) for load in scene.mechanism.loads):
         from heuncli.integration.diagnosis.turned_bushings import at_half_turn
 
         problems = at_half_turn(scene.mechanism, recovered, instant)

@@ -7,17 +7,17 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import Bushing, Mechanism
+from heuncli.mechanism.model import BushingLoad, Mechanism
 
 HINT = "bushings are for less than half a turn: what turns on needs a joint, as a pin with a turn_spring"
 
 
-def turning(mechanism: Mechanism) -> list[tuple[Bushing, int]]:
+def turning(mechanism: Mechanism) -> list[tuple[BushingLoad, int]]:
     """The bushings that resist turning, with the row of it in the kernel's table of loads."""
     return [
         (load, rows.start + 1)
         for load, rows in mechanism.load_rows()
-        if isinstance(load, Bushing) and (load.turn.stiffness.any() or any(e.constant != 0.0 for e in load.turn.given))
+        if isinstance(load, BushingLoad) and (load.turn.stiffness.any() or any(e.constant != 0.0 for e in load.turn.given))
     ]
 
 

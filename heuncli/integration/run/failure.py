@@ -12,7 +12,7 @@ from heuncli.integration.diagnosis.jamming import jammed_beyond
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.integration.run.progress import Progress
-from heuncli.mechanism.model import Bushing
+from heuncli.mechanism.model import BushingLoad
 
 
 def failure(progress: Progress, code: int) -> SolveError:
@@ -39,7 +39,7 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     problems = without_value(mechanism, t, progress.last, coordinates_at(scene.layout, recovered, 0))
     if not problems and mechanism.rubbing:
         problems = jammed_beyond(mechanism, progress.moving.workspace, t)
-    if not problems and any(isinstance(load, Bushing) for load in mechanism.loads):
+    if not problems and any(isinstance(load, BushingLoad) for load in mechanism.loads):
         from heuncli.integration.diagnosis.turned_bushings import at_half_turn
 
         problems = at_half_turn(mechanism, recovered, 0)

@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
-from heuncli.mechanism.model import Bushing, Joint, PairLoad, PointLoad
+from heuncli.mechanism.model import BushingLoad, Joint, PairLoad, PointLoad
 from heuncli.records import record
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
@@ -123,7 +123,7 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             if load.a != load.b and not (seen.stays(load.a) and seen.stays(load.b)):
                 for end, point in load.points:
                     yield from _beside(seen, height, end, point, f"a point of {name}")
-        elif isinstance(load, Bushing):
+        elif isinstance(load, BushingLoad):
             yield from _bushing(seen, load, height)
         elif load.kind == "turn_spring":
             if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
@@ -135,7 +135,7 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
                 yield Departure(f"{name} acts out of it", 1.0, True)
 
 
-def _bushing(seen: View, load: Bushing, height: float) -> Iterator[Departure]:
+def _bushing(seen: View, load: BushingLoad, height: float) -> Iterator[Departure]:
     """A bushing between bodies that are not held in the plane: level, and one of its axes along the normal."""
     if load.a == load.b or (seen.stays(load.a) and seen.stays(load.b)):
         return

@@ -20,7 +20,7 @@ from heuncli.mechanism.model import (
     Assembly,
     Blow,
     Body,
-    Bushing,
+    BushingLoad,
     Joint,
     JointLoad,
     Load,
@@ -148,7 +148,7 @@ class Flat:
         if isinstance(load, PairLoad):
             p, q = self.ends(load.a, load.p, load.b, load.q)
             return replace(load, p=p, q=q)
-        if isinstance(load, Bushing):
+        if isinstance(load, BushingLoad):
             p, q = self.ends(load.a, load.p, load.b, load.q)
             frames = self.axes(load.a) @ load.frame, self.axes(load.b) @ load.to_frame
             return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])

@@ -26,7 +26,7 @@ from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.momentum import Momenta, momenta
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, Bushing, JointLoad, PairLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
 from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
 from heuncli.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
@@ -167,7 +167,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     return block
 
 
-def bushing(load: Bushing, applied: AppliedLoad, states: BodyStates) -> ForceBlock:
+def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> ForceBlock:
     """Shift and turn of a bushing, and what it exerts on `to`, in its own axes, which stand in `from`."""
     assert applied.strain is not None
     shift, turn = applied.strain[:, 0], applied.strain[:, 1]
@@ -187,7 +187,7 @@ def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceB
             own["length"] = applied.length
         if isinstance(applied.load, JointLoad) and applied.load.kind == "turn_spring":
             own["angle"] = applied.length
-        if isinstance(applied.load, Bushing):
+        if isinstance(applied.load, BushingLoad):
             own |= bushing(applied.load, applied, states)
         if isinstance(applied.load, PairLoad | JointLoad):
             own["rate"] = applied.rate

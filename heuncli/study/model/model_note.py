@@ -11,7 +11,7 @@ from heuncli import tolerances
 from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
 from heuncli.integration.run.runner import Runner
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Bushing, Mechanism
+from heuncli.mechanism.model import BushingLoad, Mechanism
 from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import Redundancy
 from heuncli.results import Block, Mask
@@ -121,7 +121,7 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     driven = [j.name for j in mechanism.joints if j.drive is not None]
     if driven:
         sentences.append(f"driven: {some(driven)}")
-    bushings = [load.name for load in mechanism.loads if isinstance(load, Bushing)]
+    bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
     if bushings:
         sentences.append(f"on bushings, which leave all freedoms: {some(bushings)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]

@@ -29,7 +29,7 @@ from heuncli.integration.run.interruptions import at_once
 from heuncli.integration.run.runner import Runner
 from heuncli.integration.segments import discontinuities_of
 from heuncli.integration.trajectory import Trajectory
-from heuncli.mechanism.model import Bushing, PairLoad
+from heuncli.mechanism.model import BushingLoad, PairLoad
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
 from heuncli.results import Array, Estimate
@@ -264,7 +264,7 @@ def require_apart(runner: Runner, checked: CheckedRun) -> None:
         problem = comes_together(runner, checked.run, checked.horizon)
         if problem is not None:
             raise SolveError(problem)
-    if any(isinstance(load, Bushing) for load in runner.layout.mechanism.loads):
+    if any(isinstance(load, BushingLoad) for load in runner.layout.mechanism.loads):
         from heuncli.integration.check.turned_over import turns_over
 
         if (problem := turns_over(runner, checked.run, checked.horizon)) is not None:
