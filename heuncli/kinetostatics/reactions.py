@@ -155,7 +155,7 @@ class Answers(Protocol):
 
     @property
     def parts(self) -> Named:
-        """Of the rows that are sums: f, m, Q (n_t, parts, 3)."""
+        """Of the rows that are sums: f, m, Q, on_a, on_b (n_t, parts, 3)."""
 
 
 def joint_loads(

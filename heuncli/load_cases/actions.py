@@ -96,7 +96,9 @@ def _kind(action: Action, spec: Spec, struck: bool) -> str:
     """The word for an action: that of its type in the spec, of what is no load its own."""
     if action.kind != "load":
         return action.kind
-    return "impulse" if struck else spec.forces[action.name].type  # a force may have the name of a blow
+    if struck:  # a force may have the name of a blow
+        return "impulse"
+    return spec.forces[action.name].type if action.name in spec.forces else "coupling"  # a belt's pretension
 
 
 def _at(own: OneAction, k: int, named: Mapping[str, Array], center: Array) -> Iterator[PointAction]:

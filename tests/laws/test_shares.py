@@ -9,10 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
+import heuncli
 from heuncli.results import Results
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic
+from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
 from tests.shared.redundant_supports import door
 from tests.shared.scenes import moving, near, solved
@@ -446,3 +448,30 @@ def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
     shares = found.foundation["shares"]
     assert not shares["drives"]["force"].any()
     near(sum(share["force"] for share in shares.values()), found.foundation["force"], 100.0)
+
+
+@pytest.mark.parametrize("name", ["belt_drive", "screw_press"])
+def test_shares_of_couplings_add_up(name: str) -> None:
+    found = solved((SPECS / f"{name}.yaml").read_text(encoding="utf-8"), wanted=WANTED | {"couplings"})
+    for coupling in found.couplings.values():
+        parts = [share["force"] for share in coupling["shares"].values()]
+        largest = np.max(np.abs(parts))
+        assert largest > 1.0
+        np.testing.assert_allclose(np.sum(parts, axis=0), coupling["force"], rtol=0, atol=1e-9 * largest)
+
+
+def test_shares_of_a_rope_s_tensions_are_told() -> None:
+    """Over a heavy sheave that holds it: M g (1 - (M - m)/(M + m + J/R^2)) before it, of weight alone; CSV, too."""
+    scene = """{heun: 1, space: planar, gravity: [0, -10], ground: {points: {O: [0, 5], a: [-0.5, 0], b: [0.5, 0]}},
+      bodies: {sheave: {mass: 1, center: [0, 0], inertia: 1, points: {hub: [0, 0]}},
+        cage: {mass: 3, center: [0, 0], inertia: 1, points: {top: [0, 0]}},
+        weight: {mass: 1, center: [0, 0], inertia: 1, points: {top: [0, 0]}}},
+      joints: {axle: {type: pin, from: ground.O, to: sheave.hub},
+        rails: {type: slide, from: ground.a, to: cage.top, axis: [0, 1]},
+        guide: {type: slide, from: ground.b, to: weight.top, axis: [0, 1]}},
+      couplings: {hoist: {type: rope,
+        through: [cage.top, {sheave: sheave.hub, radius: 0.5, slip: none}, weight.top]}}, analysis: {type: state}}"""
+    found = heuncli.solve(text=scene, by_cause=True)
+    assert float(found["couplings.hoist.shares.gravity.tension"]) == pytest.approx(30 * (1 - 2 / 8), rel=1e-12)
+    assert float(found["couplings.hoist.shares.gravity.last_tension"]) == pytest.approx(10 * (1 + 2 / 8), rel=1e-12)
+    assert any("hoist,tension," in line and line.endswith(",gravity") for line in found.to_csv().splitlines())
