@@ -50,10 +50,10 @@ if not cython.compiled:
         Counter,
         Scene,
     )
-    from heuncli.kernel.values import Carried
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
+    from heuncli.kernel.values import Carried
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:

@@ -14,7 +14,7 @@ import trimesh
 from heuncli.pictures.courses import instants
 from heuncli.results import Array
 from heuncli.scenery.gltf import binary
-from heuncli.scenery.machine import Machine, machine_of
+from heuncli.scenery.machine import Machine, machine_of, shapes_of
 from heuncli.scenery.poses import Poses, poses_of, up_of
 from heuncli.scenery.solids import ROUND, THIN
 from heuncli.spec.load import load
@@ -84,7 +84,7 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
             found.setdefault(body, []).append(mesh)
     for look in machine.bodies:
         body, meshes = spec.bodies[look.name], found.pop(look.name, [])
-        volumes = [volume(shape) for shape in body.shapes or () if shape.type != "point"]
+        volumes = [volume(shape) for shape in shapes_of(spec, look.name) if shape.type != "point"]
         if look.spread:
             volumes = [spread(body)]
         with np.errstate(invalid="ignore"):  # flat things have no volume to divide by

@@ -148,7 +148,7 @@ class Recovery:
     @cached_property
     def couplings(self) -> list[CouplingLoads]:
         """What couplings exert."""
-        return self.couplings_of(self.decided)
+        return self.couplings_of(self.decided) if self.setup.scene.mechanism.couplings else []
 
     def couplings_of(self, decided: Resolution | None) -> list[CouplingLoads]:
         """What they exert after a split."""
