@@ -1,8 +1,8 @@
 """Speed, printed: `python -m tests.bench [PART ...] [--against PATH]`. Nothing here asserts a time.
 
 Parts: motion, chart, chain, process, export, loads, meshes, memory, sections, causes, reduced, balance, lagrange,
-pipeline, door, growth, variants, sweeps, pictures, reports, imports, pages, collectives; each line: what, error, time; memory:
-megabytes; growth: counts; pages: frames a second.
+pipeline, door, growth, variants, sweeps, pictures, reports, imports, pages, collectives; each line: what, error,
+time; memory: megabytes; growth: counts; pages: frames a second.
 figures: the few that matter in one table, with --against beside those of another checkout (tests/bench/figures.py).
 honesty: no times, but true error over estimate of each kind of number, over random scenes (tests/bench/honesty.py).
 """

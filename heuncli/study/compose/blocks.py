@@ -179,7 +179,7 @@ def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> Forc
 
 
 def forces(loads: Sequence[AppliedLoad], states: BodyStates, coupled: Set[str] = frozenset()) -> dict[str, ForceBlock]:
-    """Values, lengths, rates and powers of the applied loads; coupled: what couplings apply, as pretension, they tell."""
+    """Values, lengths, rates and powers of the applied loads; coupled: whose own, as pretension, they tell."""
     block: dict[str, ForceBlock] = {}
     for applied in loads:
         if applied.load.name in coupled:
