@@ -73,7 +73,7 @@ def _tidy_field(field: AccelerationField, r: float) -> AccelerationField:
 def _attached(recovery: Recovery, spec: Spec, body: int) -> Iterator[OneAction]:
     """The body's share of every action; a joint's drive and stops beside what its constraint carries."""
     mechanism, states = recovery.setup.scene.mechanism, recovery.states
-    for action in recovery.standing:
+    for action in sorted(recovery.standing, key=lambda own: own.kind == "load"):  # what holds it comes first
         on = attachments(body, states, [action])
         by = [OUTSIDE] * len(on) if action.spread else _exerted_by(mechanism, action, body)
         for own, other in zip(on, by, strict=True):

@@ -54,9 +54,9 @@ def forever(*_: Any, **__: Any) -> Any:
     [
         ("heuncli.spec.load.read", "run hanging.yaml", "while the spec was read"),
         ("heuncli.spec.load.read", "validate hanging.yaml", "while the spec was read"),
-        ("heuncli.study.model.setup.prepare", "run hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.model.setup.prepare", "model hanging.yaml", "while the scene was set up"),
-        ("heuncli.study.model.setup.prepare", "modes hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the scene was set up"),
+        ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the scene was set up"),
         ("heuncli.rest.search.slopes", "run rest.yaml", "on the way to the rest pose"),
         ("heuncli.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
         (

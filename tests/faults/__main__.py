@@ -8,6 +8,7 @@ import time
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Sequence
 
+from tests.faults import sources
 from tests.faults.cases import KINDS, case
 from tests.faults.pool import Judged, judged
 from tests.faults.worker import LAWS
@@ -53,7 +54,7 @@ def replay(kind: str, seed: int) -> int:
     if kind != LAWS:
         of = case(kind, seed)
         print("\n".join(f"# {name}\n{content.decode(errors='backslashreplace')}" for name, content in of.files.items()
-                        if not name.endswith(".csv") or kind == "bytes"))  # fmt: skip
+                        if name not in sources.tables() or kind == "bytes"))  # fmt: skip
         print("\n".join("$ heun " + " ".join(argv) for argv in of.commands))
         from tests.faults.shown import show
 

@@ -50,7 +50,7 @@ def of_spec(random: Random) -> Case:
 def of_bytes(random: Random) -> Case:
     """A spec, or a table, changed as bytes."""
     name, content = mutate_bytes.mutated(random)
-    if name.endswith(".csv"):
+    if name in sources.tables():
         readers = [n for n in sources.names() if name in sources.text(sources.tree(n)).decode()]
         made = validated(random, sources.text(sources.tree(random.choice(readers))))
         return made._replace(files=made.files | {name: content})

@@ -11,7 +11,7 @@ from typing import Any, TypeAlias
 import yaml
 
 FOLDER = Path(__file__).parents[2] / "specs"
-TABLES = sorted(FOLDER.glob("*.csv"))
+TABLES = sorted([*FOLDER.glob("*.csv"), *FOLDER.glob("*.stl")])
 LONGEST = 0.4  # seconds of motion, and
 SAMPLES = 9  # instants: what a mutation breaks it breaks at once
 

@@ -202,7 +202,7 @@ class Recovery:
     @property
     def standing(self) -> list[Action]:
         """The same, of each joint constraint, drive and stops apart: what may stand on the ground."""
-        return [*joint_actions(self.joints), *coupling_actions(self.couplings), *self.applied]
+        return [*self.applied, *joint_actions(self.joints), *coupling_actions(self.couplings)]
 
     @cached_property
     def energy(self) -> Block:
