@@ -225,7 +225,8 @@ TYPES: dict[str, Kind] = {
             planar="flat plane", synonyms=("inplane", "in_plane", "planar", "pointonplane"),
         ),
         Kind(
-            "curve", CURVE, FREE, "forward", coordinates=("travel",), planar="flat curve",
+            "curve", CURVE, FREE, "forward", coordinates=("travel",), drives=("travel",), loads=("damper", "friction"),
+            motions=("sliding",), planar="flat curve",
             synonyms=("path", "track", "pointoncurve", "point_on_curve"),
         ),
         Kind("rod", DISTANCE, FREE, "never", drives=("length",), planar="rod",
@@ -240,7 +241,8 @@ JOINTS: dict[str, Kind] = TYPES | {
         Kind("flat line", LINE_IN_PLANE, ABOUT_Z, "forward", axis_key="axis", motions=("sliding",), spoken="line"),
         Kind("flat plane", PLANE_IN_PLANE, ABOUT_Z, "forward", axis_key="normal", motions=("sliding",),
              spoken="plane"),
-        Kind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), spoken="curve"),
+        Kind("flat curve", CURVE_IN_PLANE, ABOUT_Z, "forward", coordinates=("travel",), motions=("sliding",),
+             spoken="curve"),
         Kind("spun pin", POINT, ABOUT_AXIS, motions=("turning",), looser_in_plane=("flat line",), spoken="pin"),
     )
 }  # fmt: skip

@@ -30,6 +30,7 @@ NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value,
 # -- couplings: what of a drawing decides whether gears fit
 TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
 STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
+SAME_PLACE = 1e-9  # of a path's reach: branches nearer than that are at one place, by what is typed or assembled of it
 TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
 
 # -- open: which components no law of rigid bodies decides, and the sums that are certain

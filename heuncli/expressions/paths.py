@@ -74,6 +74,28 @@ class Path:
         found = [self._nearest(flat[i : i + room], s, r) for i in range(0, len(flat), room)]
         return np.concatenate(found).reshape(points.shape[:-1]) if found else np.zeros(points.shape[:-1])
 
+    def near(self, point: Array, s: float) -> float:
+        """The parameter of the place nearest to a point (3,) on the branch about a parameter: others may be nearer."""
+        inside = self.first + (s - self.first) % self.period if self.period else s
+        steps = np.diff(self.looked_at)
+        room = float(steps[np.clip(np.searchsorted(self.looked_at, inside) - 1, 0, len(steps) - 1)])
+        low, high = (s - room, s + room) if self.period else (max(s - room, self.first), min(s + room, self.last))
+        return float(self._descended(point, np.array(s), np.array(low), np.array(high)))
+
+    def branches(self, point: Array, within: float) -> list[float]:
+        """The parameters of all places about a point (3,) where the path comes as near as within, each branch once."""
+        s = self.looked_at
+        low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])
+        found = self._descended(point, s, low, high)
+        off = np.sqrt(np.sum(np.square(self.at(found)[0] - point), axis=-1))
+        same = 0.5 * float(np.min(np.diff(s)))
+        told: list[float] = []
+        for here in np.sort(found[off <= within]).tolist():
+            around = self.period and told and here > told[0] + self.period - same
+            if not around and all(here > other + same for other in told):
+                told.append(here)
+        return told
+
     def _nearest(self, points: Array, s: Array, r: Array) -> Array:
         """The same of a few points (k, 3); s, r: the places looked at."""
         low, high = np.append(s[0], s[:-1]), np.append(s[1:], s[-1])

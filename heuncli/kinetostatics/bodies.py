@@ -27,7 +27,8 @@ NONE: Mapping[int, Array] = MappingProxyType({})
 class BodyStates:
     """World axes; bodies in the order of the spec. x, v, a: of the origin; centre: of the centre of mass.
 
-    R (n_t, n, 3, 3); all others (n_t, n, 3), SI.
+    R (n_t, n, 3, 3); all others (n_t, n, 3), SI. ways (n_t, n_w, 3): r' of the paths, where the points of their joints
+    are: of where a path crosses itself the pose alone does not tell which branch it is.
     """
 
     R: Array
@@ -39,6 +40,7 @@ class BodyStates:
     centre: Array
     v_centre: Array
     a_centre: Array
+    ways: Array
 
     def rows_of(self, name: str) -> Array:
         """A field by component, (n, 3, n_t); R (n, 3, 3, n_t)."""
@@ -107,19 +109,23 @@ class CarriedStates(BodyStates):
     _gravity: Array
     _beside: Mapping[str, Array]
 
-    def __init__(self, table: Table, order: list[int], gravity: Array, beside: Mapping[str, Array]) -> None:
+    def __init__(
+        self, table: Table, order: list[int], gravity: Array, beside: Mapping[str, Array], ways: Array
+    ) -> None:
         """table: the kernel's, tree order (accelerations less g); order: each body's place in it.
 
-        beside: from the joint points to the origins and the centres, body axes, (n, 3) each.
+        beside: from the joint points to the origins and the centres, body axes, (n, 3) each. ways (n_t, n_w, 3): in the
+        axes of the bodies in which the paths are fixed.
         """
-        straight = order == [*range(table.shape[1])]
-        self.__dict__.update(_table=table, _order=None if straight else order, _gravity=gravity, _beside=beside)
+        own = None if order == [*range(table.shape[1])] else order
+        self.__dict__.update(_table=table, _order=own, _gravity=gravity, _beside=beside, ways=ways)
 
     def at(self, which: slice) -> CarriedStates:
         """At some of the instants; what was found by component is not found again."""
         made, own = object.__new__(CarriedStates), self.__dict__
         made.__dict__.update(
             _table=self._table[which], _order=self._order, _gravity=self._gravity, _beside=self._beside,
+            ways=self.ways[which],
             _rows={name: np.ascontiguousarray(found[..., which]) for name, found in self._rows.items()},
         )  # fmt: skip
         if "turning" in own:
@@ -183,8 +189,22 @@ def body_states(layout: Layout, recovered: Recovered, steady: Mapping[int, Array
     steady: axes (body axes) about which the spins of bodies do not change: d/dt (omega . a) = alpha . a = 0. What of it
     the kernel finds is rounding of a moment over the inertia about the axis, of a wire next to none.
     """
-    states = CarriedStates(recovered.bodies, layout.order, layout.mechanism.gravity, layout.beside)
+    ways = np.zeros((len(recovered.bodies), sum(joint.path is not None for joint in layout.mechanism.joints), 3))
+    states = CarriedStates(recovered.bodies, layout.order, layout.mechanism.gravity, layout.beside, ways)
+    if ways.shape[1]:
+        put_ways(layout, recovered, states)
     for i, axis in steady.items():
         n = states.R[:, i] @ axis
         states.alpha[:, i] -= np.sum(states.alpha[:, i] * n, axis=1, keepdims=True) * n
     return states
+
+
+def put_ways(layout: Layout, recovered: Recovered, states: CarriedStates) -> None:
+    """The directions of the paths where their joints stand along them."""
+    for freedom, q in zip(layout.freedoms, recovered.freedoms["q"].T, strict=True):
+        joint = layout.mechanism.joints[freedom.joint] if freedom.joint >= 0 else None
+        if joint is not None and joint.path is not None and freedom.quantity == "travel":
+            slope = joint.path.at(q)[1]
+            states.ways[:, joint.way] = (
+                slope if joint.a == GROUND else (states.R[:, joint.a] @ slope[..., None])[..., 0]
+            )

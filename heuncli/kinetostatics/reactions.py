@@ -17,7 +17,6 @@ from typing import Protocol
 
 import numpy as np
 
-from heuncli.expressions.paths import Path
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.mechanism.model import Joint, Stop
@@ -171,6 +170,8 @@ def joint_loads(
     for k, joint in joints:
         kind = JOINTS[joint.kind]
         axis = states.direction(joint.a, joint.axis) if kind.has_axis else None
+        if kind.follows_path and joint.drive is not None:
+            axis = along_path(joint, states)
         drive = tension = None
         if k in hang_of:
             i, h = hang_of[k]
@@ -180,6 +181,8 @@ def joint_loads(
                 force, moment = -force, -moment - cross_rows(arm, force)
             if k in driven:
                 drive = recovered.freedoms["drive"][..., driven[k]]
+                if kind.follows_path:  # the kernel's is that of the coordinate, which counts r' along the path
+                    drive = drive / np.sqrt(np.sum(states.ways[:, joint.way] ** 2, axis=1))
         else:
             force, moment = (_of_joint(layout, k, recovered.rows, of) for of in ("f", "m"))
             own = rows_of(layout, k)
@@ -232,16 +235,10 @@ def in_plane(force: Array, moment: Array) -> tuple[Array, Array]:
     return force * IN_PLANE, moment * ACROSS
 
 
-def across_path(joint: Joint, path: Path, states: BodyStates, force: Array) -> Array:
-    """The part of a force across the path where the joint's point is on it."""
-    D = states.point_position(joint.b, joint.q) - states.point_position(joint.a, joint.p)
-    if joint.a >= 0:
-        D = np.einsum("tji,tj->ti", states.R[:, joint.a], D)
-    slope = path.at(path.nearest(D))[1]
-    n = slope / np.sqrt(np.sum(slope * slope, axis=1))[:, None]
-    if joint.a >= 0:
-        n = np.einsum("tij,tj->ti", states.R[:, joint.a], n)
-    return np.asarray(force - np.sum(force * n, axis=-1)[..., None] * n)
+def along_path(joint: Joint, states: BodyStates) -> Array:
+    """The unit vector along the path where the joint's point is on it, (n_t, 3)."""
+    way = states.ways[:, joint.way]
+    return np.asarray(way / np.sqrt(np.sum(way * way, axis=1))[:, None])
 
 
 def constraint_map(joint: Joint, states: BodyStates) -> Array:
@@ -263,9 +260,7 @@ def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Arr
     elif kind.turns:
         n = states.direction(joint.a, joint_frame(joint, kind.turns[0]))
         moment = moment - np.sum(moment * n, axis=-1)[..., None] * n
-    if joint.path is not None:
-        return across_path(joint, joint.path, states, force), moment
     for d in kind.shifts:
-        n = states.direction(joint.a, joint_frame(joint, d))
+        n = along_path(joint, states) if kind.follows_path else states.direction(joint.a, joint_frame(joint, d))
         force = force - np.sum(force * n, axis=-1)[..., None] * n
     return force, moment

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Literal
 
@@ -63,6 +64,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         driven(stages.run(joint, j, index[j.a], index[j.b], planar, of=name), drives.get(name), last)
         for name, j in spec.joints.items()
     )
+    made = numbered(made)
     loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
     conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
     conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
@@ -150,6 +152,12 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         drive=None, restitution=j.restitution, bearing=j.bearing,
         p_name=j.p_name, q_name=j.q_name, path=j.path,
     )  # fmt: skip
+
+
+def numbered(joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
+    """Joints of which those along paths have their numbers."""
+    count = itertools.count()
+    return tuple(joint if joint.path is None else replace(joint, way=next(count)) for joint in joints)
 
 
 def coupled(spec: m.Spec) -> set[str]:

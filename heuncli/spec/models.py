@@ -148,7 +148,7 @@ class Joint(Generic[Ref, V]):
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
     drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
     bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
-    of a curve, from the point p on, a's axes.
+    of a curve, from the point p on, a's axes; way: in a mechanism, its number among those along paths.
     """
 
     name: str
@@ -173,6 +173,7 @@ class Joint(Generic[Ref, V]):
     p_name: str | None = None
     q_name: str | None = None
     path: Path | None = None
+    way: int = -1
 
 
 class PointForce(NamedTuple):

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.errors import Problem, SolveError
 from heuncli.expressions.paths import Path
 from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
@@ -76,19 +77,39 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
 
 
 def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
-    """Where the point of a path stands along it: at the nearest place, on a closed one in the turn that is held."""
+    """Where the point of a path stands along it: on the branch that is held or driven to, else at the nearest place.
+
+    Raises SolveError where nothing tells on which of several branches.
+    """
     xa, Ra, va, wa = pose(start, joint.a)
     xb, Rb, vb, wb = pose(start, joint.b)
     D = xb + Rb @ joint.q - xa
-    travel = float(path.nearest(Ra.T @ D - joint.p))
-    if path.period and joint.travel is not None:
-        travel += path.period * round((joint.travel - travel) / path.period)
-    elif joint.travel is not None and math.isclose(travel, joint.travel, abs_tol=tolerances.SAME_VALUE):
-        travel = joint.travel
+    place, held = Ra.T @ D - joint.p, joint.travel
+    if joint.drive is not None and not joint.drive.from_start and not joint.drive.zero_assembled:
+        held = joint.drive.value.derivatives(0.0)[0]
+    if held is None:
+        travel = float(path.nearest(place))
+        require_one_branch(joint, path, place)
+    else:
+        travel = path.near(place, held)
+        if math.isclose(travel, held, abs_tol=tolerances.SAME_VALUE):
+            travel = held
     slope = path.at(travel)[1]
     v = Ra.T @ (vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, D))
     turn = float((Ra @ Z) @ (wb - wa))
     return JointStart(R, 0.0, turn, travel, float(slope @ v) / float(slope @ slope))
+
+
+def require_one_branch(joint: Joint, path: Path, place: Array) -> None:
+    """Raise SolveError where a path crosses or touches itself at a place on it: each branch would be another motion."""
+    found = path.branches(place, tolerances.SAME_PLACE * path.greatest[0])
+    if len(found) > 1:
+        where = " and ".join(f"{s:.6g}" for s in found[:3])
+        message = (
+            f"joint {joint.name} starts where its path meets itself, at travel {where}: on which branch is not told"
+        )
+        hint = f"initial: {{travel: {found[0]:.6g}}} says which"
+        raise SolveError(Problem("path-branch", message, None, hint, f"joints.{joint.name}"))
 
 
 def first_angle(joint: Joint, R: Array) -> float:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
+from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
@@ -138,6 +141,109 @@ def test_in_the_plane_as_in_space() -> None:
     space, plane = solved(swapped), solved(swapped.replace("heun: 1", "heun: 1\nspace: planar"))
     near(plane.joints["wire"]["force"], space.joints["wire"]["force"], 40.0, 1e-9)
     near(plane.coordinates["wire"]["travel"], space.coordinates["wire"]["travel"], 1.0, 1e-9)
+    drive = "drives: {go: {joint: wire, travel: 'cos(3*t)'}}\nanalysis"
+    swapped = swapped.replace("analysis", drive)
+    space, plane = solved(swapped), solved(swapped.replace("heun: 1", "heun: 1\nspace: planar"))
+    for name in ("force", "drive"):
+        near(plane.joints["wire"][name], space.joints["wire"][name], 40.0, 1e-9)
+
+
+ROUND = f", period: {2.0 * math.pi}"
+
+
+def across_twice(s: Array) -> Array:
+    """sin s cos s."""
+    return np.asarray(0.5 * np.sin(2.0 * s))
+
+
+EIGHT = [table(f, 0.0, 2.0 * math.pi, 240, ROUND) for f in (np.sin, across_twice)]
+
+
+@cache
+def eight_by_splines() -> Callable[..., Array]:
+    """SciPy's splines through the same points."""
+    from scipy.interpolate import CubicSpline
+
+    around = np.linspace(0.0, 2.0 * math.pi, 241)
+    places = np.stack([np.sin(around), 0.0 * around, across_twice(around)], axis=-1)
+    places[-1] = places[0]
+    found: Callable[..., Array] = CubicSpline(around, places, bc_type="periodic")
+    return found
+
+
+def along_the_eight(s: Array, u: Array, c: float = 0.0) -> tuple[Array, Array, Array]:
+    """Of 2 kg at s on x = sin s, z = sin s cos s, by its splines: r', what s'' is with a damper, the wire's force."""
+    eight = eight_by_splines()
+    r1, bent = eight(s, 1), np.asarray(u * u)[..., None] * eight(s, 2) + np.array([0.0, 0.0, 9.81])
+    square = np.sum(r1 * r1, axis=-1)
+    along = np.sum(bent * r1, axis=-1) / square
+    return r1, -along - 0.5 * c * u, 2.0 * (bent - along[..., None] * r1)
+
+
+def times_and_speeds(knots: Array, first: float, c: float) -> tuple[Array, Array]:
+    """When a bead is at knots of the eight, and how fast: dt/ds = 1/u, du^2/ds = 2 s'', smooth from knot to knot."""
+    from scipy.integrate import solve_ivp
+
+    def rate(s: float, y: Array) -> Array:
+        u = np.sqrt(y[1])
+        return np.array([1.0 / u, 2.0 * along_the_eight(np.array(s), u, c)[1]])
+
+    found = [np.array([0.0, first * first])]
+    for one, other in itertools.pairwise(knots.tolist()):
+        piece: Any = solve_ivp(rate, (one, other), found[-1], "RK45", rtol=1e-12, atol=1e-13)
+        found.append(piece.y[:, -1])
+    t, square = np.stack(found, axis=1)
+    return t, np.sqrt(square)
+
+
+@pytest.mark.parametrize("c", [0.0, 0.4])
+def test_a_path_that_crosses_itself(c: float) -> None:
+    """A bead that goes round an eight and twice through its crossing, against the equation of its way alone.
+
+    At the crossing both branches are at one place: force, direction and travel are those of the branch it came along.
+    """
+    knots = np.linspace(0.0, 2.0 * math.pi, 241)[100:]
+    t, u = times_and_speeds(knots, 6.0, c)
+    at = [0, 20, 21, 80, 139, 140]  # the crossing is at 20, and at 140
+    load = f"forces: {{drag: {{type: damper, joint: wire, coefficient: {c}}}}}" if c else ""
+    start = f"travel: {knots[0]!r}, speed: 6".replace("np.float64(", "").replace(")", "")
+    results = solved(bead(EIGHT[0], "0", EIGHT[1], start, str(t[at].tolist()), head=load))
+    near(results.coordinates["wire"]["travel"], knots[at], 10.0, 1e-9)
+    near(results.coordinates["wire"]["speed"], u[at], 10.0, 1e-9)
+    near(results.joints["wire"]["force"], along_the_eight(knots[at], u[at])[2], 150.0, 1e-9)
+
+
+def test_a_start_where_a_path_meets_itself() -> None:
+    """Both branches are another motion: one is held, or driven to, or none is taken."""
+    starts = 0.0, math.pi
+    held = [bead(EIGHT[0], "0", EIGHT[1], f"travel: {s}, speed: 2", "[0, 0.1]") for s in starts]
+    for text, s in zip(held, starts, strict=True):
+        force = solved(text).joints["wire"]["force"][0]
+        near(force, along_the_eight(np.array(s), np.array(2.0))[2], 20.0, 1e-9)
+    driven = held[0].replace(", initial: {travel: 0.0, speed: 2}", "")
+    with pytest.raises(SolveError, match=r"at travel 0 and 3\.14159: on which branch is not told"):
+        solved(driven)
+    drive = f"drives: {{go: {{joint: wire, travel: '{math.pi} + 2*t'}}}}\nanalysis"
+    results = solved(driven.replace("analysis", drive))
+    near(results.coordinates["wire"]["travel"], math.pi + 2.0 * results.time, 4.0, 1e-12)
+    s, u = (results.coordinates["wire"][name] for name in ("travel", "speed"))
+    r1, falls, across = along_the_eight(s, u)
+    near(results.joints["wire"]["force"], across, 30.0, 1e-9)
+    near(results.joints["wire"]["drive"], -2.0 * falls * np.sqrt(np.sum(r1 * r1, axis=1)), 30.0, 1e-9)
+
+
+@pytest.mark.parametrize(("head", "message"), [
+    ("stops: {s: {joint: wire, travel: [0, 2]}}", "a curve has no travel to be limited"),
+    ("latches: {s: {joint: wire}}", "a curve has no coordinate: a latch holds one"),
+    ("forces: {f: {type: damper, joint: wire, force: '-3*rate'}}", "by a law of its rate acts in a pin or slide"),
+    ("forces: {f: {type: friction, joint: wire, coefficient: 0.3, speed: 0.01}}", "with a coefficient acts in a pin"),
+    ("forces: {f: {type: torque, joint: wire, value: 3}}", "a torque acts about a pin or along a slide"),
+    ("couplings: {c: {type: ratio, of: [wire, wire], factors: [1, 2]}}", "the travel of a curve cannot be coupled"),
+])  # fmt: skip
+def test_what_does_not_act_along_a_path(head: str, message: str) -> None:
+    """Told with a hint: its direction is not that of an axis."""
+    with pytest.raises(SpecError, match=message):
+        solved(bead(EIGHT[0], "0", EIGHT[1], "travel: 0.3", "[0, 1]", head=head))
 
 
 def test_the_end_of_a_path() -> None:

@@ -28,8 +28,11 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
                 continue
             kind = TYPES.get(joints[joint])
-            if kind is not None and not kind.coordinates:
-                able = named([kind for kind in TYPES.values() if kind.coordinates], "and")
+            if kind is not None and (not kind.coordinates or kind.follows_path):
+                able = named([kind for kind in TYPES.values() if kind.coordinates and not kind.follows_path], "and")
+                if kind.follows_path:
+                    yield Violation(path, f"the travel of a {kind.name} cannot be coupled", f"couplings are of {able}")
+                    continue
                 yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
             elif kind is not None and quantity and quantity not in kind.coordinates:
                 yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")

@@ -90,7 +90,7 @@ def damper_law(name: str, load: f.DamperEntry, kind: Kind) -> Iterator[Violation
     """A damper by a law of the rate: in a pin a torque, in a slide a force."""
     path = ("forces", name)
     given = "torque" if load.torque is not None else "force"
-    fitting = LAW[kind.motions[0]] if len(kind.motions) == 1 and kind.coordinates else None
+    fitting = LAW[kind.motions[0]] if kind.has_one_axis and len(kind.motions) == 1 else None
     if fitting is None:
         message = f"a damper by a law of its rate acts in a pin or slide, not in a {kind.name}"
         yield Violation((*path, "joint"), message, "give a coefficient")
@@ -179,6 +179,9 @@ def by_coefficient(name: str, load: f.FrictionEntry, kind: Kind) -> Iterator[Vio
         message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
         hint = "its turning and its sliding rub as one: a pin and a slide, or torque and force of a given size"
         yield Violation((*path, "joint"), message, hint)
+    elif kind.follows_path:
+        message = f"friction with a coefficient acts in a pin or slide, not in a {kind.name}"
+        yield Violation((*path, "joint"), message, "along a path it has a given size: force")
     elif kind.motions == ("turning",):
         if load.radius is None:
             hint = "radius: of the journal, at which the force on the joint rubs, as 20 mm"

@@ -30,13 +30,49 @@ def meshes(tilt: float, place: float) -> str:
     return "fine"
 
 
+PATH = """
+heun: 1
+tables: {x: {X, interpolation: cubic}, z: {Z, interpolation: cubic}}
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bead: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {P: [0, 0, 0]}, near: {position: [0, 0, 0]}}}
+joints: {wire: {type: curve, from: ground.O, to: bead.P, x: x, z: zNEXT}}
+analysis: {type: state}
+"""
+
+
+def runs(x: str, z: str, next_: str = "") -> str:
+    """A bead on a path by two tables."""
+    try:
+        solve(load("bead.yaml", text=PATH.replace("X,", f"{x},").replace("Z,", f"{z},").replace("NEXT", next_)))
+    except HeunError as error:
+        return f"refused: {error.problems[0].code}"
+    return "fine"
+
+
+def slow(slope: float) -> str:
+    """On (s^2, slope s) r' is least in the middle, `slope`, where |r'| at the ends is 2: a share of slope / 2."""
+    z = f"x: [-1, 0, 1], y: [{-2.0 * slope!r}, 0, {2.0 * slope!r}]"
+    return runs("x: [-1, 0, 1], y: [1, 0, 1]", z, ", initial: {travel: 0.5}")
+
+
+def touches(apart: float) -> str:
+    """A loop x = s^3 - s, z = s^2 - 1 + half s, which at s = -1 and 1 comes to x = 0, there apart by 2 half."""
+    s = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0]
+    half = 0.5 * apart * REACH
+    x, z = [v**3 - v for v in s], [v * v - 1.0 + half * v for v in s]
+    return runs(f"x: {s}, y: {x}", f"x: {s}, y: {z}")
+
+
+REACH = 1.0  # of that path: |r| is 1 in the middle, where z = -1
+
 PART = Part(
     headings=("couplings",),
     rows=(
         Row("TYPED_AXES", lambda x: meshes(x, 0.1), "fine", "refused: gear-axes"),
         Row("TYPED_POINT", lambda x: meshes(0.0, 0.1 + 0.4 * x), "fine", "refused: gear-axes"),
+        Row("STANDS_STILL", slow, "refused: path-form", "fine"),
+        Row("SAME_PLACE", touches, "refused: path-branch", "fine"),
     ),
-    wanted={"STANDS_STILL": "whether a path has a direction where its slope is least"},
 )
 ROPES = Part(
     headings=("ropes over sheaves",),
