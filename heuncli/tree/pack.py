@@ -414,7 +414,8 @@ class _Builder:
         a, b = self.in_tree(own.a), self.in_tree(own.b)
         p, q = self.relative(own.a, own.p), self.relative(own.b, own.q)
         self.row_joint.append(joint)
-        self.closure_rows.append(ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length))
+        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, factor=1.0)
+        self.closure_rows.append(row)
         self.paths.append(sorted(set(self._path(a)) | set(self._path(b)), reverse=True))
 
     def _path(self, i: int) -> list[int]:
