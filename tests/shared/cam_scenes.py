@@ -34,15 +34,15 @@ def cam_scene(seed: int) -> dict[str, Any]:
     e, f = across(n)
     O = rng.uniform(-0.5, 0.5, 3)
     C = O + (0.5 * e + 0.05 * f if joint == "slide" else 0.45 * f) + rng.uniform(-0.2, 0.2) * n
-    sense = math.copysign(1.0, float(rng.standard_normal()))
+    sense, way = (math.copysign(1.0, float(rng.standard_normal())) for _ in range(2))
     member(maker, carrier, "disc", "pin", O, sense * n, 0.0)
     if joint == "slide":
         first = float(rng.uniform(-0.3, 0.3))
-        member(maker, carrier, "follower", "slide", rng.uniform(-0.5, 0.5, 3), e, first)
+        member(maker, carrier, "follower", "slide", rng.uniform(-0.5, 0.5, 3), way * e, first)
     else:
         first = 0.0
         pivot = O - 0.6 * e + 0.1 * f + rng.uniform(-0.2, 0.2) * n
-        member(maker, carrier, "follower", "pin", pivot, n, first)
+        member(maker, carrier, "follower", "pin", pivot, way * n, first)
     own = maker.state["follower"]
     A = placed(maker.state, carrier)
     at = own.rotation.T @ (A.point(C) - own.position)
