@@ -67,6 +67,7 @@ class CamEntry(Entry):
     contact: Literal["roller", "flat", "point"]
     radius: Length | None = None
     normal: Direction | None = None
+    phase: Angle = 0.0
     two_sided: Switch = False
     restitution: Number | None = None
 

@@ -108,7 +108,7 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     shaft, follower = entry.of
     return c.Cam(
         shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
-        entry.two_sided, entry.restitution,
+        entry.phase, entry.two_sided, entry.restitution,
     )  # fmt: skip
 
 

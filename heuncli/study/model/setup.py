@@ -99,10 +99,6 @@ def set_up(
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
     prepared = prepare_coupled(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
-    if any(coupling.given.type == "cam" for coupling in prepared.mechanism.couplings):
-        from heuncli.tree.cam_flanks import require_flanks  # few scenes have them
-
-        require_flanks(prepared.layout)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
 
