@@ -83,7 +83,9 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
         if rope.length is not None:
             require_length(rope, coupling.name, length)
             length = rope.length
-        rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution))
+        elif rope.law is not None:
+            length = 0.0  # the law tells all of it, and moves the start
+        rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution, rope.law))
     return replace(coupling, rows=tuple(rows))
 
 

@@ -139,7 +139,7 @@ def set_up(
 
 def require_drives(mechanism: Mechanism, t: float) -> None:
     """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
-    jets = [joint.drive.value.derivatives(t) for joint in mechanism.joints if joint.drive is not None]
+    jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
         from heuncli.integration.diagnosis.domains import large_values  # only on the way to an error
 
