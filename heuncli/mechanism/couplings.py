@@ -118,8 +118,8 @@ class CouplingPart:
 class CoupledRow:
     """One scalar condition: the sum of its parts is the length; None: as it is at the assembled start.
 
-    law: what is added to the length in time. weight: of its gap [m per unit], 0: the scene's size. tension_only: its multiplier is never above zero; with
-    restitution it opens and closes, without the run ends where it would push.
+    law: what is added to the length in time. weight: of its gap [m per unit], 0: the scene's size. tension_only: its
+    multiplier is never above zero; with restitution it opens and closes, without the run ends where it would push.
     """
 
     parts: tuple[CouplingPart, ...]

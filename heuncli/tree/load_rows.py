@@ -35,7 +35,8 @@ Components = tuple[Program, Program, Program]
 class ValuePrograms(NamedTuple):
     """The values in time of a mechanism: their pack, and where the program of each stands, by its identity.
 
-    drives: that of each joint's drive, then of each coupling's law. Theirs come first in the pack: where they stand hangs on no load.
+    drives: that of each joint's drive, then of each coupling's law. Theirs come first in the pack: where they stand
+    hangs on no load.
     """
 
     pack: Pack

@@ -93,7 +93,8 @@ def framed(
     drives: tuple[Program, ...],
     tree: GivenTree | None,
 ) -> LayoutFrame:
-    """A layout without its loads; named: joints and points that expressions name; drives: a program a joint, and a coupling."""
+    """A layout without its loads; named: joints and points that expressions name; drives: a program a joint, then a
+    coupling."""
     spanning = span(mechanism, to_be_kept(mechanism, named)) if tree is None else tree.spanning
     if tree is not None and tree.starts is not None:
         starts = list(tree.starts)

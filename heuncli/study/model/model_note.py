@@ -118,7 +118,7 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings]
     if coupled:
         sentences.append(f"coupled: {some(coupled)}")
-    driven = [j.name for j in mechanism.joints if j.drive is not None]
+    driven = [mechanism.owner(law.owner).partition(".")[2] for law in mechanism.laws]
     if driven:
         sentences.append(f"driven: {some(driven)}")
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
