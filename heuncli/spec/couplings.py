@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.expressions.programs import TableFunction
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.ends import End, Vec
 
@@ -168,7 +168,7 @@ class Passage(NamedTuple):
 
 
 class Rope(NamedTuple):
-    """A rope without mass through points and over sheaves; length [m], None: as assembled.
+    """A rope without mass through points and over sheaves; length [m], None: as assembled, or by the law in time.
 
     tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
     """
@@ -177,6 +177,7 @@ class Rope(NamedTuple):
     length: float | None = None
     tension_only: bool = False
     restitution: float | None = None
+    law: Expression | None = None
     type: Literal["rope"] = "rope"
 
     @property

@@ -147,8 +147,8 @@ def large_values(mechanism: Mechanism, t: float, coordinates: Moving) -> list[Pr
 
 
 def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
-    """Every expression that is not constant, and whether it drives a joint."""
-    driven = {id(joint.drive.value) for joint in mechanism.joints if joint.drive is not None}
+    """Every expression that is not constant, and whether it drives a joint or a rope."""
+    driven = {id(law.value) for law in mechanism.laws}
     for expression in mechanism.expressions():
         if expression.constant is None:
             yield expression, id(expression) in driven
