@@ -275,6 +275,11 @@ def coupled_scene(seed: int, kinds: tuple[str, ...] | None = None) -> Scene:
     raise RuntimeError("no scene found that fits")
 
 
+def told(v: Array) -> list[float]:
+    """A vector without what rounding leaves of nothing."""
+    return np.where(np.abs(v) < 1e-15, 0.0, v).tolist()
+
+
 def held(scene: Scene, rng: np.random.Generator) -> Scene:
     """The scene with the assembled state as what is given. Raises HeunError where it does not fit."""
     analysis = {"type": "state"}
@@ -285,7 +290,7 @@ def held(scene: Scene, rng: np.random.Generator) -> Scene:
         now = state[name]
         bodies[name] = {
             **body, "position": now.position.tolist(), "orientation": {"matrix": now.rotation.tolist()},
-            "velocity": now.velocity.tolist(), "angular_velocity": now.angular_velocity.tolist(),
+            "velocity": told(now.velocity), "angular_velocity": told(now.angular_velocity),
         }  # fmt: skip
     joints = {n: {k: v for k, v in j.items() if k != "initial"} for n, j in scene["joints"].items()}
     cuts = {f"cut_{n}": {"body": n, **cut} for n, b in bodies.items() if (cut := cut_through(b, rng)) is not None}
