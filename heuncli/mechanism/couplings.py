@@ -59,6 +59,7 @@ class CouplingPart:
     whatever moves, and stands in the axes of c, too. radius: of a wheel; of what of a rope lies on
     a sheave, below zero where it runs round clockwise about e. strand: of that the place among the row's parts of the
     strand that arrives. other_axis: of a strand between two sheaves the axis of b, parallel to e.
+    on_a: of a mesh the point of c at which its load counts as standing on a; None: p.
     """
 
     kind: CouplingKind
@@ -76,6 +77,7 @@ class CouplingPart:
     radius: float = 0.0
     strand: int = 0
     other_axis: Array | tuple[float, float, float] = NOWHERE
+    on_a: Array | None = None
 
     @property
     def holds_speed(self) -> bool:
