@@ -123,6 +123,7 @@ MISSING = {  # what a key is that must be there
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
+BALL_AND_CV = "a constant-velocity joint is a ball, and couplings: {NAME: {type: cv, joint: BALL, axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
@@ -139,6 +140,10 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",
+    "cv": BALL_AND_CV,
+    "constant_velocity": BALL_AND_CV,
+    "homokinetic": BALL_AND_CV,
+    "rzeppa": BALL_AND_CV,
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
