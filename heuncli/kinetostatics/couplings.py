@@ -170,6 +170,8 @@ def _part_loads(
     first = int(layout.tables["closures"][r]["part"])
     for k, part in enumerate(parts, first):
         f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
+        if part.on_a is not None:
+            on_a = states.point_position(part.c, part.on_a)
         pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
         m_a = m + cross_rows(Q - on_a, f)
         yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)

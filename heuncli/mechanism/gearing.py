@@ -100,11 +100,12 @@ def mesh_parts(
     m: Array,
     counted: Sequence[Coordinate],
     apart: Array | None = None,
+    on_a: Array | None = None,
 ) -> tuple[CouplingPart, ...]:
     """A load fixed in the carrier, and its coordinates, two to a part."""
     parts = [
         CouplingPart("mesh", a, b, P, e=f, g=m, c=carrier, coordinates=tuple(counted[:2]),
-                     apart=np.zeros(3) if apart is None else apart)
+                     apart=np.zeros(3) if apart is None else apart, on_a=on_a)
     ]  # fmt: skip
     for i in range(2, len(counted), 2):  # no load of their own
         parts.append(CouplingPart("mesh", carrier, carrier, P, c=carrier, coordinates=tuple(counted[i : i + 2])))

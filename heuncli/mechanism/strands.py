@@ -44,7 +44,7 @@ def belt_row(given: c.Belt, joints: Sequence[Joint], bodies: Sequence[Body], of:
 
     counted = [Coordinate(x.joint, x.quantity, -work(first) * x.ratio) for x in first.coordinates]
     counted += [Coordinate(x.joint, x.quantity, work(second) * x.ratio) for x in second.coordinates]
-    return CoupledRow(mesh_parts(first.body, second.body, carrier, P, f, m, counted))
+    return CoupledRow(mesh_parts(first.body, second.body, carrier, P, f, m, counted, on_a=first.point))
 
 
 def pretension_of(

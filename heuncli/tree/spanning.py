@@ -7,8 +7,8 @@ spin, as a link on two balls: what it passes on does not turn it. Then what leav
 together hang on each other and, but for those, only circles of welds are cut. Joints that leave a thin body free to
 turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
 one layer those that make most conditions are kept.
-`line` and `plane` carry a body only from their `from` side, a rod never does; a body that nothing carries hangs on
-six freedoms of its own.
+`line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that nothing carries
+hangs on six freedoms of its own. So does one with a path whose runner is all that holds it: a curve is never cut.
 """
 
 from __future__ import annotations
@@ -55,8 +55,15 @@ def span(mechanism: Mechanism, kept: Collection[int]) -> Spanning:
             edges[joint.a].append(k)
             edges[joint.b].append(k)
     depth = _depths(mechanism, edges)
-    forest = _forest(mechanism, depth, kept)
-    return _walk(mechanism, forest)
+    free: list[int] = []
+    while True:
+        found = _walk(mechanism, _forest(mechanism, depth, kept, free), free)
+        turned = next((k for k in found.cut if JOINTS[mechanism.joints[k].kind].follows_path), None)
+        if turned is None:
+            return found
+        if mechanism.joints[turned].b == GROUND or mechanism.joints[turned].a in free:
+            raise SolveError(_path_unheld(mechanism.joints[turned]))
+        free.append(mechanism.joints[turned].a)
 
 
 def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
@@ -73,8 +80,13 @@ def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
     return depth
 
 
-def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> dict[int, list[int]]:
-    """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written."""
+def _forest(
+    mechanism: Mechanism, depth: list[int], kept: Collection[int], free: Collection[int]
+) -> dict[int, list[int]]:
+    """Kruskal's forest: kept joints first, then layer by layer, those with most conditions first, then as written.
+
+    free: bodies that hang on six freedoms of their own, whatever holds what they carry.
+    """
     joints = mechanism.joints
     null = null_axes(mechanism)
     between = passing_on(mechanism, null)
@@ -95,6 +107,8 @@ def _forest(mechanism: Mechanism, depth: list[int], kept: Collection[int]) -> di
             x = group[x]
         return x
 
+    for body in free:
+        group[root(body)] = root(GROUND)
     forest = defaultdict(list)
     for k in sorted(range(len(joints)), key=urgency):
         joint = joints[k]
@@ -165,13 +179,21 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     )
 
 
-def _walk(mechanism: Mechanism, forest: dict[int, list[int]]) -> Spanning:
+def _path_unheld(joint: Joint) -> Problem:
+    return Problem(
+        "path-unheld",
+        f"joints.{joint.name} is to hold the body of its path by a point that is held already",
+        hint="the path's body carries what runs along it: run a body of its own, on a ball or pin at that point",
+    )
+
+
+def _walk(mechanism: Mechanism, forest: dict[int, list[int]], free: Collection[int]) -> Spanning:
     joints = mechanism.joints
     seen = [False] * len(mechanism.bodies)
     used: set[int] = set()
     hangs: list[Hang] = []
     queue: deque[int] = deque([GROUND])
-    fresh = iter(range(len(mechanism.bodies)))
+    fresh = iter((*free, *range(len(mechanism.bodies))))
     while True:
         while queue:
             x = queue.popleft()

@@ -17,15 +17,16 @@ from heuncli.study.ask.study import Study
 TIMES = 10.0  # the stated errors
 SAME = 1e-9  # of the last instant
 FLOOR = 1e-7  # of the largest of a unit: what is hunted here are wrong numbers, not last digits
-BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy")
+BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "couplings", "sections", "forces",
+          "energy")  # fmt: skip
 # not everywhere defined, told elsewhere, or of a strength that is not told otherwise
 SKIPPED = frozenset({"quaternion", "rodrigues", "axis", "line", "shares", "about", "pitch", "utilisation"})
 LEAST = {"rad": 1.0, "1": 1.0, "Pa": 1e3}  # numbers far below these are rounding of what is 0
-# powers of time in units
-RATES = {
-    "m/s": 1, "m/s²": 2, "rad/s": 1, "rad/s²": 2, "N": 2, "N·m": 2, "J": 2, "W": 3, "N·m/s": 3, "Pa": 2, "s": -1,
-    "N·s": 1,
-    "N·m·s": 1,
+# powers of mass, length, time in units
+POWERS = {
+    "m": (0, 1, 0), "m/s": (0, 1, -1), "m/s²": (0, 1, -2), "rad/s": (0, 0, -1), "rad/s²": (0, 0, -2), "N": (1, 1, -2),
+    "N·m": (1, 2, -2), "J": (1, 2, -2), "W": (1, 2, -3), "N·m/s": (1, 2, -3), "Pa": (1, -1, -2), "s": (0, 0, 1),
+    "N·s": (1, 1, -1), "N·m·s": (1, 2, -1),
 }  # fmt: skip
 
 
@@ -57,7 +58,7 @@ def apart(first: Study, second: Study, change: Change, *, same_open: bool = True
         pairs = _pairs(block, getattr(first.results, block), getattr(second.results, block), TREE[block])
         worst: list[Apart] = []
         for path, one, other, row in pairs:
-            if set(path.split(".")) & (SKIPPED | skipped):
+            if left_out(path, skipped):
                 continue
             if row is None:
                 worst += [] if more and one is None else [Apart(path, math.inf, 0.0)]
@@ -67,6 +68,11 @@ def apart(first: Study, second: Study, change: Change, *, same_open: bool = True
         if worst:
             found.append(max(worst, key=lambda one: one.off / max(one.allowed, 1e-300)))
     return found + (struck_apart(first, second, change, same_open, skipped) if not found else [])
+
+
+def left_out(path: str, skipped: frozenset[str]) -> bool:
+    """Whether a path has a name that is not compared, or begins with one that is."""
+    return bool({*path.split(".")} & (SKIPPED | skipped)) or any(path.startswith(f"{own}.") for own in skipped)
 
 
 def instants_of_both(first: Study, second: Study, clock: Callable[[Array], Array]) -> tuple[Array, Array]:
@@ -91,7 +97,7 @@ def struck_apart(first: Study, second: Study, change: Change, same_open: bool, s
     found: list[Apart] = []
     one, other = (of[0] for of in blows)
     for path, a, b, row in _pairs("impulses.0", one, other, TREE["impulses"]["NUMBER"]):
-        if row is None or set(path.split(".")) & (SKIPPED | skipped) or not row.units:
+        if row is None or left_out(path, skipped) or not row.units:
             continue
         wanted, told = change(np.asarray(a, dtype=float), row), np.asarray(b, dtype=float)
         own = {unit: float(np.nanmax(np.abs(told), initial=0.0)) if told.size else 0.0 for unit in row.units}
@@ -187,9 +193,15 @@ def turning(Q: Array) -> Change:
 
 def growing(c: float) -> Change:
     """Rates c times, loads c² times as large."""
+    return measured_in(1.0, 1.0, 1.0 / c)
+
+
+def measured_in(mass: float, length: float, time: float) -> Change:
+    """Told in other units; not looked at where the same row tells lengths and angles, which change apart."""
 
     def change(value: Array, row: Quantity) -> Array:
-        return np.asarray(value * c ** RATES.get(row.units[0], 0))
+        factors = {mass**m * length**l * time**t for m, l, t in (POWERS.get(unit, (0, 0, 0)) for unit in row.units)}
+        return np.asarray(value * (factors.pop() if len(factors) == 1 else np.nan))
 
     return change
 

@@ -20,14 +20,16 @@ from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.faults import mild, sources
-from tests.faults.agree import apart, beyond_peaks, growing, kept, state_at, turning
+from tests.faults.agree import apart, beyond_peaks, growing, kept, measured_in, state_at, turning
 from tests.faults.outcome import peak
 from tests.faults.sources import Tree
 from tests.shared import retell
-from tests.shared.retell import NotTold
+from tests.shared.retell_elements import NotTold
+from tests.shared.retell_elements import from_the_other_side as from_side
 
 LIMIT = 5.0  # seconds of a run
 SEVERAL = 0.3  # of the scenes so many are random ones, the others the repository's
+OF_ELEMENTS = 0.5  # of the random ones so many have machine elements
 OTHER_METHODS = ("DOP853", "Radau5", "Radau9", "Verner98", "DOPRI5", "DOP853-recentred")
 
 
@@ -48,12 +50,16 @@ def scene(random: Random) -> Tree:
 
 
 def random_scene(random: Random) -> Tree:
-    """A tree or a closed chain with all its values in time, as the oracle makes them."""
+    """A tree or a closed chain with all its values in time, as the oracle makes them; machine elements."""
     from tests.oracle.values import to_yaml
+    from tests.shared.coupled_scenes import coupled_scene
     from tests.shared.loops import loop_scene
     from tests.shared.trees import tree_scene
 
     seed = random.randrange(100_000)
+    if random.random() < OF_ELEMENTS:
+        found: Tree = sources.parsed(to_yaml(coupled_scene(seed)))
+        return found
     made = random.choice((tree_scene, lambda seed: loop_scene(seed % 1000 + random.choice((0, 1000)))))(seed)[0]
     analysis = {"times": [0.0, 0.05, 0.1, 0.2]}
     told: Tree = sources.parsed(to_yaml({**made, "analysis": analysis}))
@@ -136,12 +142,28 @@ def solved(tree: Tree, **options: Any) -> Study:
 def turned(random: Random, tree: Tree, _: Study) -> Twins:
     Q = retell.turn_of(random)
     first = retell.with_first_axes(tree)
-    return Twins(first, retell.turned(first, Q), lambda a, b: apart(a, b, turning(Q), same_open=False))
+    own = frozenset(f"forces.{n}" for n, load in retell.entries(tree, "forces") if load.get("type") == "bushing")
+    twin = retell.turned(first, Q)
+    return Twins(first, twin, lambda a, b: apart(a, b, turning(Q), same_open=False, skipped=own))
 
 
 def faster(random: Random, tree: Tree, _: Study) -> Twins:
     c = random.choice((0.5, 2.0, 1.7, 10.0))
     return Twins(tree, retell.faster(tree, c), lambda a, b: apart(a, b, growing(c), clock=lambda t: t / c))
+
+
+def in_units(random: Random, tree: Tree, _: Study) -> Twins:
+    of = (random.choice((1.0, 2.2, 1e3)), random.choice((1.0, 39.37, 1e3)), random.choice((1.0, 0.1)))
+    twin = retell.in_units(tree, *of)
+    change = measured_in(*of)
+    return Twins(tree, twin, lambda a, b: apart(a, b, change, clock=lambda t: t * of[2], same_open=of[1] == 1.0))
+
+
+def from_the_other_side(random: Random, tree: Tree, _: Study) -> Twins:
+    twin, name = from_side(tree, random)
+    blocks = ("couplings", "foundation.elements")
+    paths = frozenset(f"{before}{block}.{name}" for before in ("", "impulses.0.") for block in blocks)
+    return Twins(tree, twin, lambda a, b: apart(a, b, kept, skipped=paths))
 
 
 def reordered(random: Random, tree: Tree, _: Study) -> Twins:
@@ -209,6 +231,6 @@ def from_the_other_end(random: Random, tree: Tree, _: Study) -> Twins:
 LAWS: dict[str, Callable[[Random, Tree, Study], Twins]] = {
     "turned": turned, "faster": faster, "reordered": reordered, "later": later, "unreduced": unreduced,
     "another method": another_method, "otherwise sampled": otherwise_sampled, "in halves": in_halves,
-    "from the other end": from_the_other_end,
+    "from the other end": from_the_other_end, "in units": in_units, "from the other side": from_the_other_side,
     "within extremes": within_extremes,
 }  # fmt: skip

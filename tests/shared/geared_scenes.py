@@ -35,7 +35,9 @@ def geared_scene(seed: int) -> dict[str, Any]:
     return maker.scene
 
 
-def mesh(maker: Maker, rng: np.random.Generator, carrier: str, form: str) -> dict[str, Any]:
+def mesh(
+    maker: Maker, rng: np.random.Generator, carrier: str, form: str, names: tuple[str, str] = ("one", "two")
+) -> dict[str, Any]:
     """Two members that move alike at a point, and the entry of their mesh; the carrier's axes."""
     P, n = rng.uniform(-1, 1, 3), random_unit(rng)
     out = across(n)[0]
@@ -50,22 +52,23 @@ def mesh(maker: Maker, rng: np.random.Generator, carrier: str, form: str) -> dic
         first, second = ("pin", apex + 0.8 * n, n), ("pin", apex + rng.uniform(0.2, 1) * other, sense * other)
     elif form == "rack":
         second = ("slide", P + rng.uniform(-1, 1, 3), sense * cross(n, out))
-    for name, (kind, point, axis) in (("one", first), ("two", second)):
+    for name, (kind, point, axis) in zip(names, (first, second), strict=True):
         member(maker, rng, carrier, name, kind, point, axis)
-    of = ["j_one", "j_two"] if rng.random() < 0.5 else ["j_two", "j_one"]
+    of = [f"j_{name}" for name in (names if rng.random() < 0.5 else names[::-1])]
     helix = float(rng.uniform(-0.4, 0.4))
     at = {"body": carrier, "at": P.tolist()}
     return {"type": "gear", "of": of, "at": at, "helix": helix, "pressure_angle": 0.0}
 
 
-def thread(maker: Maker, rng: np.random.Generator, carrier: str, form: str) -> dict[str, Any]:
+def thread(
+    maker: Maker, rng: np.random.Generator, carrier: str, form: str, names: tuple[str, str] = ("one", "two")
+) -> dict[str, Any]:
     """A spindle in a pin and a nut in a slide along it, and the entry of their thread."""
-    n = random_unit(rng)
-    member(maker, rng, carrier, "one", "pin", rng.uniform(-1, 1, 3), n)
-    member(
-        maker, rng, carrier, "two", "slide", rng.uniform(-1, 1, 3), math.copysign(1.0, float(rng.standard_normal())) * n
-    )
-    return {"type": form, "of": ["j_one", "j_two"], "lead": float(rng.uniform(-3, 3))}
+    n, (spindle, nut) = random_unit(rng), names
+    member(maker, rng, carrier, spindle, "pin", rng.uniform(-1, 1, 3), n)
+    sense = math.copysign(1.0, float(rng.standard_normal()))
+    member(maker, rng, carrier, nut, "slide", rng.uniform(-1, 1, 3), sense * n)
+    return {"type": form, "of": [f"j_{spindle}", f"j_{nut}"], "lead": float(rng.uniform(-3, 3))}
 
 
 def member(
@@ -76,14 +79,14 @@ def member(
     maker.names.append(name)
     A, R = placed(maker.state, carrier), random_rotation(rng)
     q = maker.spot(name)
-    shift = rng.uniform(-0.3, 0.3) * axis if kind == "slide" else np.zeros(3)
+    shift = rng.uniform(-0.3, 0.3) * axis if kind != "pin" else np.zeros(3)
     maker.place(name, Placed(A.point(point + shift) - R @ q, R, np.zeros(3), np.zeros(3)))
     own = R.T @ A.rotation @ axis
     if rng.random() < 0.5:
-        spec = {"axis": axis.tolist()} | ({"to_axis": own.tolist()} if kind == "pin" else {})
+        spec = {"axis": axis.tolist()} | ({"to_axis": own.tolist()} if kind != "slide" else {})
         maker.join(f"j_{name}", kind, spec, carrier, point, name, q)
     else:
-        spec = {"axis": own.tolist()} | ({"to_axis": axis.tolist()} if kind == "pin" else {})
+        spec = {"axis": own.tolist()} | ({"to_axis": axis.tolist()} if kind != "slide" else {})
         maker.join(f"j_{name}", kind, spec, name, q, carrier, point)
 
 

@@ -15,16 +15,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from tests.oracle.turns import Array
+from tests.shared.retell_elements import NotTold, elements_in_units, turned_bushing, turned_elements
 
 Tree: TypeAlias = Any  # mappings, lists, numbers and words
 WITH_UNIT = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?\s*[A-Za-z°µ%].*\Z")
 TIME = re.compile(r"(?<![\w.])t(?![\w.])")
 COORDINATE = re.compile(r"(?<![\w.])([A-Za-z]\w*)\.(rate|speed|travel)(?!\w)")
 E1 = [0.36, -0.48, 0.8]  # e1 of sections that leave it to the body's axes, which turn
-
-
-class NotTold(Exception):
-    """This spec is not told in this way."""
 
 
 def plain(tree: Tree) -> Tree:
@@ -46,7 +43,7 @@ def plain(tree: Tree) -> Tree:
 
 BLOCKS = (
     "ground", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "analysis",
-    "foundation",
+    "foundation", "couplings", "rolling", "latches",
 )  # fmt: skip
 
 
@@ -133,9 +130,10 @@ def turned(tree: Tree, Q: Array) -> Tree:
         for shape in body.get("shapes", []):
             turn(shape, "from", "to", "center", "at")
             if shape.get("type") == "box":
-                if "orientation" in shape:
-                    raise NotTold("a box that is turned")
-                shape["orientation"] = {"matrix": (det * Q).tolist()}
+                own = shape.get("orientation", {"matrix": np.eye(3).tolist()})
+                if "matrix" not in own:
+                    raise NotTold("a box that is turned by words")
+                shape["orientation"] = {"matrix": (det * Q @ np.array(own["matrix"], dtype=float)).tolist()}
     for _, joint in entries(tree, "joints"):
         if det < 0.0 and joint.get("type") == "cylinder":
             raise NotTold("an axis with two senses")
@@ -146,6 +144,9 @@ def turned(tree: Tree, Q: Array) -> Tree:
     for block in ("forces", "impulses"):
         for _, load in entries(tree, block):
             turn(load, "from", "to", "on", "vector", "to_vector", "couple", axial=load.get("type") == "couple")
+            if load.get("type") == "bushing":
+                turned_bushing(load, Q)
+    turned_elements(tree, Q, turn)
     for _, cut in entries(tree, "sections"):
         turn(cut, "at", "from", "to", "normal", "first_axis", "reduce_to")
         if "piece" in cut:
@@ -209,7 +210,7 @@ BODY = {
 COORDINATES = {"angle": NOTHING, "rate": RATE, "travel": LENGTH, "speed": SPEED, "length": LENGTH}
 IMPULSE = {"vector": (1, 1, -1), "couple": (1, 2, -1), "time": TIME_ITSELF}
 ANALYSIS = dict.fromkeys(("duration", "times", "step"), TIME_ITSELF)
-ENDS = dict.fromkeys(("from", "to", "on", "at", "reduce_to"), LENGTH)
+ENDS = dict.fromkeys(("from", "to", "on", "at", "reduce_to", "wheel", "point", "sheave"), LENGTH)
 # of loads along a line, and of those about an axis, which differ where a joint may slide or turn
 SLIDING: dict[str, dict[str, Powers]] = {
     "force": {"vector": FORCE}, "couple": {"vector": MOMENT}, "torque": {"value": FORCE}, "actuator": {"value": FORCE},
@@ -251,9 +252,10 @@ def in_units(tree: Tree, mass: float = 1.0, length: float = 1.0, time: float = 1
             raise NotTold("stiffness of a joint")
         tell(joint, {**ENDS, "length": LENGTH})
         tell(joint.get("initial", {}), COORDINATES)
-    for block in ("drives", "stops"):
+    for block in ("drives", "stops", "latches"):
         for _, entry in entries(tree, block):
             tell(entry, COORDINATES)
+    elements_in_units(tree, tell, mass, length, time)
     for _, load in entries(tree, "forces"):
         slides = tree["joints"].get(load.get("joint"), {}).get("type") in SLIDES
         table = (SLIDING if slides else TURNING).get(str(load.get("type")), {})
@@ -306,7 +308,7 @@ def later(tree: Tree, by: float, state: Mapping[str, Mapping[str, Any]]) -> Tree
     state: position, quaternion, velocity and angular velocity of every body at that instant.
     """
     tree = copy.deepcopy(tree)
-    if tree.get("impulses") or tree.get("stops") or any(True for _ in _conditions(tree)):
+    if any(tree.get(block) for block in ("impulses", "stops", "latches")) or any(True for _ in _conditions(tree)):
         raise NotTold("what depends on the past")
     for _, joint in entries(tree, "joints"):
         if joint.get("tension_only") or ("to_axis" in joint and joint.get("type") != "universal"):
@@ -348,6 +350,7 @@ IN_TIME = {
     "drives": {"angle", "travel", "length", "rate", "speed"},
     "forces": {"vector", "to_vector", "value", "stiffness", "damping", "coefficient", "torque", "force"},
     "impulses": {"when"},
+    "latches": {"when", "release"},
     "analysis": {"until", "events"},
 }  # fmt: skip
 
@@ -363,7 +366,8 @@ def _rewritten(value: Any, change: Callable[[str], str]) -> Any:
 def reordered(tree: Tree, random: Random) -> Tree:
     """The entries of all blocks, and the shapes of bodies, in another order."""
     tree = copy.deepcopy(tree)
-    for block in ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables"):
+    for block in ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables",
+                  "couplings", "rolling", "latches"):
         if isinstance(tree.get(block), dict):
             tree[block] = _shuffled(random, tree[block])
     for _, body in entries(tree, "bodies"):
@@ -454,9 +458,11 @@ def from_the_other_end(tree: Tree, random: Random) -> tuple[Tree, str]:
     """A joint whose ends change places, and its name."""
     tree = copy.deepcopy(tree)
     planar = tree.get("space", "auto") == "planar"
+    named = {entry.get("joint") for _, entry in entries(tree, "couplings")}
     ends = [
         (n, j)
         for n, j in entries(tree, "joints")
+        if n not in named
         if j.get("type") in ("rod", "weld") or (j.get("type") == "ball" and not planar)
     ]
     if not ends:

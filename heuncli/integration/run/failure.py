@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import coordinates_at, without_value
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, lifts_left, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
@@ -27,9 +27,20 @@ def failure(progress: Progress, code: int) -> SolveError:
         return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
     name, message, hint = TROUBLE[code]
     if name == "closure-lost":
+        if known := lifts_ended(progress) or turned_bushings(progress):
+            return SolveError(*known)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
     return without_acceleration(progress, name, message, hint)
+
+
+def lifts_ended(progress: Progress) -> list[Problem]:
+    """The problems of cams that have turned off their lifts there, for which no closed chain has to be looked at."""
+    t, scene = progress.t, progress.scene
+    if not any(coupling.given.type == "cam" for coupling in scene.layout.mechanism.couplings):
+        return []
+    there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
+    return lifts_left(scene.layout.mechanism, t, progress.last * 2.0**-FARTHEST, there)
 
 
 def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:
@@ -39,10 +50,7 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     problems = without_value(mechanism, t, progress.last, coordinates_at(scene.layout, recovered, 0))
     if not problems and mechanism.rubbing:
         problems = jammed_beyond(mechanism, progress.moving.workspace, t)
-    if not problems and any(isinstance(load, BushingLoad) for load in mechanism.loads):
-        from heuncli.integration.diagnosis.turned_bushings import at_half_turn
-
-        problems = at_half_turn(mechanism, recovered, 0)
+    problems = problems or turned_bushings(progress)
     problems = problems or growing(scene, t, state, progress.passed)
     if problems:
         return SolveError(*problems)
@@ -52,6 +60,17 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     if light and name == "step-collapsed":
         hint += f", as where closed loops cease to hold the turn of what has no inertia: {', '.join(light)}"
     return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
+
+
+def turned_bushings(progress: Progress) -> list[Problem]:
+    """Those by which a run ends, of whatever it is that fails there: by their moment, which jumps."""
+    scene = progress.scene
+    if not any(isinstance(load, BushingLoad) for load in scene.layout.mechanism.loads):
+        return []
+    from heuncli.integration.diagnosis.turned_bushings import at_half_turn
+
+    recovered = scene.recovered(np.array([progress.t]), progress.state[None, :])
+    return at_half_turn(scene.layout.mechanism, recovered, 0)
 
 
 def chattering(t: float, expression: Expression, branch: int) -> Problem:

@@ -47,13 +47,14 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
         names = [body.name for body in mechanism.bodies]
+        struck = bool(recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
         shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
         for own in recovery.couplings:
             if own.coupling.given.type in ("gear", "screw", "belt"):
                 from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
                 given = own.coupling.given
-                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried)
+                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried, struck)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 
