@@ -13,6 +13,7 @@ BODY = "{mass: 1, center: [0, 0, 0], inertia: [1, 2, 3], angular_velocity: [0.5,
 SCENE = f"heun: 1\ntitle: A free body\nbodies: {{b: {BODY}}}\nanalysis: {{duration: DUR, samples: 3}}\n"
 
 
+@pytest.mark.heavy
 def test_json_keeps_to_the_contract(heun: Heun, folder: Path) -> None:
     (folder / "free.yaml").write_text(SCENE.replace("DUR", "8"))
     done = heun("probe", "free.yaml", "--format", "json")

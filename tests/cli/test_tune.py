@@ -188,7 +188,7 @@ def test_the_spec_from_standard_input_and_the_result_to_a_file(heun: Heun, folde
 
 @pytest.mark.heavy
 def test_several_processes_give_the_same(heun: Heun) -> None:
-    words = ["gable.yaml", "b=0.5:1.9m", "m=1:4kg", "--minimise", "joints.k.force", "--evaluations", "70"]
+    words = ["gable.yaml", "b=0.5:1.9m", "m=1:4kg", "--minimise", "joints.k.force", "--evaluations", "40"]
     assert found_by(heun, *words) == found_by(heun, *words, "--jobs", "3")
 
 

@@ -67,7 +67,7 @@ def least_largest(length: float) -> tuple[float, float]:
 
 
 def tuned(heun: Heun, *words: str) -> dict[str, Any]:
-    done = heun("tune", *words, "--format", "json", "--quiet")
+    done = heun("tune", *words, "--jobs", "1", "--format", "json", "--quiet")
     assert done.returncode == 0, done.stderr
     found: dict[str, Any] = json.loads(done.stdout)
     return found
@@ -77,7 +77,7 @@ def tuned(heun: Heun, *words: str) -> dict[str, Any]:
 def test_counterweight_of_an_engine(heun: Heun, folder: Path) -> None:
     """The least largest shaking force, and its weight, against a dense scan of the closed form."""
     (folder / "engine.yaml").write_text(ENGINE)
-    found = tuned(heun, "engine.yaml", "m=0:3kg", "--minimise", "max foundation.force", "--evaluations", "250")
+    found = tuned(heun, "engine.yaml", "m=0:3kg", "--minimise", "max foundation.force", "--evaluations", "120")
     weight, force = least_largest(0.14)
     assert found["ended"] == "converged" and found["constraints"] == []
     best = found["goal"]["best"]["value"]
@@ -92,7 +92,7 @@ def test_counterweight_of_an_engine(heun: Heun, folder: Path) -> None:
 def test_half_of_what_goes_to_and_fro(heun: Heun, folder: Path) -> None:
     """With a long rod the weight balances what rotates and half of what reciprocates, as all books have it."""
     (folder / "engine.yaml").write_text(ENGINE)
-    words = ["m=0:3kg", "--set", "l=40", "--minimise", "max foundation.force", "--evaluations", "250"]
+    words = ["m=0:3kg", "--set", "l=40", "--minimise", "max foundation.force", "--evaluations", "120"]
     found = tuned(heun, "engine.yaml", *words)
     expected = (ROTATING + RECIPROCATING / 2.0) / R_WEIGHT
     assert found["converged"] and found["variables"][0]["value"] == pytest.approx(expected, rel=2.0 * R_CRANK / 40.0)

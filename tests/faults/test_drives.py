@@ -137,6 +137,7 @@ def test_two_drives_that_hold_still_together() -> None:
     assert not np.isnan(found.foundation["force"]).any()
 
 
+@pytest.mark.heavy
 def test_a_drive_beyond_what_the_loop_can_do() -> None:
     """The rocker cannot swing past where coupler and crank lie over each other, C 0.6 m from A: there the run ends."""
     D = angles()["D"]

@@ -26,6 +26,7 @@ def problem_of(text: str, method: str, step: float) -> Problem:
     return caught.value.problems[0]
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("method", spared(["Euler", "Heun2", "Heun3", "RK4"], quick={"RK4"}))
 def test_a_stiff_spring_in_long_steps(method: str) -> None:
     """k = 1e8 N/m, c = 2e4 Ns/m on 1 kg: a double root at 1e4 1/s; shorter steps than the hint's follow it."""

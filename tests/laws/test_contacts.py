@@ -204,6 +204,7 @@ def test_starts_of_ropes(body: str, rope: str, closed: float, blows: int) -> Non
         assert run.blows[0].time == 0.0 and run.blows[0].kinetic == (pytest.approx(4.0), pytest.approx(1.0))
 
 
+@pytest.mark.heavy
 def test_replays_know_what_was_closed() -> None:
     """Other instants of a run with strikes, to the last bit what a run that was asked for them gives."""
     text = BALL.format(at=1, speed=0, floor=0, e=0.5)

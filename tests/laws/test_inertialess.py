@@ -255,6 +255,7 @@ def test_what_nothing_holds_is_named(name: str) -> None:
     assert problem.message == f"at t = 0 s a freedom has no inertia behind it: {wanted}"
 
 
+@pytest.mark.heavy
 def test_where_the_loops_cease_to_hold_the_run_ends() -> None:
     """Towards the dead centre the slider's mass is behind the crank by the square of a slope that vanishes there."""
     with pytest.raises(SolveError) as refusal:

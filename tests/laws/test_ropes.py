@@ -139,6 +139,7 @@ def test_listed_from_the_other_end(slip: str) -> None:
     assert one["on"]["upper"]["moment"] == pytest.approx(other["on"]["upper"]["moment"], abs=1e-7)
 
 
+@pytest.mark.heavy
 def test_sides_by_hand() -> None:
     """Over and under are left and right as the rope is listed; the other sides make another rope."""
     over = solved(block()).couplings["rope"]["tension"]
@@ -150,6 +151,7 @@ def test_sides_by_hand() -> None:
     assert same.count(True) == 1
 
 
+@pytest.mark.heavy
 def test_what_leaves_the_plane() -> None:
     """A swing aside of a degree is warned of, one of ten refused; none, and nothing is said."""
     assert not [w for w in solved(jib(side=0.0)).warnings if "plane" in w]

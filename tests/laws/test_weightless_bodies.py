@@ -27,6 +27,7 @@ bodies:
 """
 
 
+@pytest.mark.heavy
 def test_a_link_on_two_balls_is_a_rod() -> None:
     """Its spin is idle: neither joint is kept for its sake, whatever it weighs."""
     balls = "  u: {type: ball, from: a.e, to: c.o}\n  v: {type: ball, from: c.e, to: b.e}\n"

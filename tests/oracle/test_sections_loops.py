@@ -53,6 +53,7 @@ def test_cut_bodies(seed: int) -> None:
             near(np.where(M, block["moment"][k], 0.0), np.where(M, there.moment, 0.0), c.force[k] * c.length)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("seed", THESE)
 def test_components_of_a_cut(seed: int) -> None:
     """N, Q1, Q2, T, M1, M2 in the cut's own axes: numbers where the self-stress has no part along that axis."""

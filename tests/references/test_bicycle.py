@@ -65,6 +65,7 @@ def test_eigenvalues(speed: float) -> None:
         assert abs(nearest.eigenvalue - value) <= max(nearest.error, 2e-14 * abs(value))
 
 
+@pytest.mark.heavy
 def test_freedoms_of_pose_and_of_speed() -> None:
     """Seven and three, as the paper counts them."""
     model = study(bicycle(5.0)).results.model
