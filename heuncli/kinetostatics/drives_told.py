@@ -2,7 +2,7 @@
 
     radial = |F| tan(alpha_n) / cos(beta)    axial = |F| tan(beta)    normal = along the line of action
     torque = F lead / (2 pi)                 tight, slack = T_0 +- |F| / 2
-F: the load carried.
+F: the load carried, in blows an impulse. Blows have no pretension.
 """
 
 from __future__ import annotations
@@ -16,21 +16,22 @@ from heuncli.results import Array
 from heuncli.spec import couplings as c
 
 
-def gear_told(given: c.Gear, F: Array) -> dict[str, Array]:
+def gear_told(given: c.Gear, F: Array, pretensioned: bool) -> dict[str, Array]:
     """Parts of a tooth force [N]."""
     radial = np.abs(F) * (math.tan(given.pressure_angle) / math.cos(given.helix))
     axial = np.abs(F) * abs(math.tan(given.helix))
     return {"radial": radial, "axial": axial, "normal": np.sqrt(F * F + radial * radial + axial * axial)}
 
 
-def screw_told(given: c.Screw, F: Array) -> dict[str, Array]:
+def screw_told(given: c.Screw, F: Array, pretensioned: bool) -> dict[str, Array]:
     """The torque that a thrust takes [N m]."""
     return {"torque": F * (given.lead / math.tau)}
 
 
-def belt_told(given: c.Belt, F: Array) -> dict[str, Array]:
+def belt_told(given: c.Belt, F: Array, pretensioned: bool) -> dict[str, Array]:
     """The pulls of both strands [N]."""
-    return {"tight": given.pretension + 0.5 * np.abs(F), "slack": given.pretension - 0.5 * np.abs(F)}
+    T0 = given.pretension if pretensioned else 0.0
+    return {"tight": T0 + 0.5 * np.abs(F), "slack": T0 - 0.5 * np.abs(F)}
 
 
 TOLD: dict[str, Callable[..., dict[str, Array]]] = {"gear": gear_told, "screw": screw_told, "belt": belt_told}
