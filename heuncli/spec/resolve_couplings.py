@@ -18,7 +18,6 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.models import End, ResultCondition, Z
 
-
 PUSHES = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 
 

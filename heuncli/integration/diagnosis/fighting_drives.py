@@ -38,7 +38,7 @@ def told(mechanism: Mechanism, coupling: Coupling, drives: Sequence[str], t: flo
 
 
 def relations(mechanism: Mechanism, coupling: Coupling) -> Iterator[Sequence[Coordinate]]:
-    """The coordinates that a coupling holds in fixed ratios, with their factors; of each of its conditions that does."""
+    """The coordinates that a coupling holds in fixed ratios, with their factors; of each such condition."""
     if coupling.given.type == "ratio":
         places = {joint.name: k for k, joint in enumerate(mechanism.joints)}
         yield [Coordinate(places[term.joint], term.quantity, term.factor) for term in coupling.given.terms]

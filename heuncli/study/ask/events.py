@@ -151,6 +151,10 @@ class WatchedNumber(NamedTuple):
         most = self.study.instants_at_once
         return np.concatenate([self._part(times[i : i + most]) for i in range(0, len(times), most)])
 
+    def column(self, times: Array) -> Array:
+        """The same as the only column of a search, (n, 1)."""
+        return self.sample(times)[:, None]
+
     def _part(self, times: Array) -> Array:
         values, condition = self.values(times), self.condition
         limit = condition.limit * abs(condition.limit) if self.even else condition.limit
@@ -233,8 +237,8 @@ def reasons(study: Study, setup: Setup, found: Mapping[str, Changes], last: floa
             times = np.append(times[times < last], last) if last < times[-1] else times
             number, keys = watched(study, setup, condition, times)
             error = np.array([number.error(keys, number.sample(times))])
-            highest = search(lambda at, of=number: of.sample(at)[:, None], times, errors=error, sides=(1.0,)).high[0]
-            words[condition.name] = condition.why.format(at_least(condition.given + float(highest)))
+            lacking = search(number.column, times, errors=error, sides=(1.0,)).high[0]
+            words[condition.name] = condition.why.format(at_least(condition.given + float(lacking)))
     return words
 
 
