@@ -162,6 +162,7 @@ UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as t
 
 # -- loads that are none
 SET_GOING = 1e-10  # of the largest load on a body over its mass: ten times NO_LOAD, which a sweep leaves
+PARTED = 1e-9  # of the largest rate: what several drives of a coupling may leave of it, far above rounding
 NO_FORCE = 1e-12  # of the largest load it is summed from: hundreds of roundings; it has no line of action
 NO_LOAD = 1e-11  # of the largest m (a - g): what a sweep leaves at six freedoms that nothing holds
 NO_ENERGY = 1e-20  # of the weight's work over the size: squares of speeds of 1e-10, as OPEN_RATE lets pass

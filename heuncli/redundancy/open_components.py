@@ -15,8 +15,10 @@ from heuncli.kinetostatics.actions import joint_action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coupling_numbers import numbers_of
 from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
+from heuncli.kinetostatics.drives_told import TOLD
 from heuncli.kinetostatics.joint_axes import components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
+from heuncli.mechanism.couplings import Coupling
 from heuncli.redundancy.self_stress import SelfStress
 from heuncli.results import Array, Block, Mask
 
@@ -108,7 +110,7 @@ def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> Non
         for name in parts.keys() & own.keys():
             own[name] = opened(own[name], parts[name])
     for beside in ("radial", "axial", "normal", "torque", "tight", "slack"):
-        if beside in block and beside not in parts and np.any(block[beside]):
+        if beside in block and beside not in parts and hangs_on_load(loads.coupling, beside):
             block[beside], parts[beside] = opened(block[beside], parts[loads.carries]), parts[loads.carries]
     by_stress = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
     on = [list(own.on_bodies().values()) for own in by_stress]
@@ -118,6 +120,12 @@ def open_coupling(block: Block, loads: CouplingLoads, stress: SelfStress) -> Non
         force, moment = wrench_open(stress, share)
         parts |= {f"on.{end}.force": force, f"on.{end}.moment": moment}
     block["open"] = names_of(parts)
+
+
+def hangs_on_load(coupling: Coupling, beside: str) -> bool:
+    """Whether a number that is told beside the load hangs on it: of straight teeth the axial part does not."""
+    told = TOLD[coupling.given.type](coupling.given, np.ones(1), False)
+    return bool(np.any(told[beside]))
 
 
 def open_in_section(

@@ -113,10 +113,10 @@ def direct_of(results: Results, item: Series, own: Mapping[Key, Mapping[str, Ser
 
 def key_of(block: TableBlock, group: RowGroup, row: NumberRow) -> Key:
     """Under which kind, name and label the results have the number of a table's row."""
-    if block.key != "foundation":
-        return block.key, group.name, row.label
+    if block.kind != "foundation":
+        return block.kind, group.name, row.label
     name = group.name.replace("support ", "supports.", 1).replace("element ", "elements.", 1)
-    return block.key, {"total": "", "": MASS_EFFECT.key}.get(name, name), row.label  # the mass effects have no shares
+    return block.kind, {"total": "", "": MASS_EFFECT.key}.get(name, name), row.label  # the mass effects have no shares
 
 
 def instants_table(

@@ -77,10 +77,12 @@ class RowGroup(NamedTuple):
 class TableBlock(NamedTuple):
     """One table of the report before it is laid out; `what` heads the column of the groups' names.
 
+    key: the report that it is of, kind: the block of the results, as in its plan.
     `missing` is what stands for nan, and the note that explains it.
     """
 
     key: str
+    kind: str
     heading: str
     what: str
     groups: tuple[RowGroup, ...]
@@ -148,7 +150,7 @@ def build(plan: TablePlan, results: Results, labels: Labels, series: Iterable[Se
     if plan.kind == "energy" and groups:
         groups = [_with_sum(groups[0])]
     heading = plan.heading(results, labels)
-    return TableBlock(plan.key, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
+    return TableBlock(plan.key, plan.kind, heading, plan.what, tuple(groups), notes, plan.missing) if groups else None
 
 
 def rows_of(series: Series) -> list[NumberRow]:

@@ -247,6 +247,7 @@ IMPULSES = (
         key="stops",
         heading=lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
     ),
+    COUPLINGS._replace(key="couplings", heading=lambda results, labels: "COUPLINGS  the impulse that each carries"),
     SECTIONS._replace(
         quantities=RESULTANTS,
         heading=lambda results, labels: (

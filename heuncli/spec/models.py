@@ -425,7 +425,8 @@ class ResultCondition(NamedTuple):
     """What is watched for in the results: the number at the path `of` is below the limit, or above it.
 
     text: as written. ends: whether the motion ends where it becomes true. why: of one that an entry brings with it, as
-    wheels do, what it then means, in words.
+    wheels do, what it then means, in words. given: what of the entry is too small by as much as the number passes the
+    limit; {} in the words is what it would have to be at least.
     """
 
     name: str
@@ -435,6 +436,7 @@ class ResultCondition(NamedTuple):
     limit: float
     above: bool
     why: str = ""
+    given: float | None = None
 
 
 WatchedCondition = Condition | ResultCondition

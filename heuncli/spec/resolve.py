@@ -5,7 +5,7 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 from heuncli.errors import Problem, SourceLocation
@@ -23,7 +23,7 @@ from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.names import GROUND, UNTIL
-from heuncli.spec.resolve_couplings import conditions_of_wheels, meant, wheel_meant
+from heuncli.spec.resolve_couplings import conditions_of_belts, conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import (
     body_axes,
     drive_of,
@@ -127,7 +127,7 @@ class Resolver:
             kind, instants, instants[-1] if kind == "motion" else None,
             analysis.tolerance if analysis.tolerance is not None else DEFAULT_TOLERANCE, canonical(analysis.method),
             analysis.step,
-            (*self.conditions(analysis), *(conditions_of_wheels(self.document.rolling) if kind == "motion" else ())),
+            (*self.conditions(analysis), *(self.brought() if kind == "motion" else ())),
             analysis.tolerance is not None,
         )  # fmt: skip
 
@@ -357,6 +357,11 @@ class Resolver:
         found = [(UNTIL, True, UNTIL, analysis.until)] if analysis.until is not None else []
         found += [(name, False, f"events.{name}", given) for name, given in analysis.events.items()]
         return tuple(self.condition(*row) for row in found)
+
+    def brought(self) -> Iterator[m.ResultCondition]:
+        """What entries bring with them to be watched for."""
+        yield from conditions_of_wheels(self.document.rolling)
+        yield from conditions_of_belts(self.document.couplings)
 
     def condition(
         self, name: str, ends: bool, path: str, given: Expression | f.ResultConditionEntry

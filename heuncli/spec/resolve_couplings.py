@@ -5,6 +5,7 @@ For documents in which no rule found an error.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Protocol
 
@@ -16,6 +17,8 @@ from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_rolling import RollingEntry
 from heuncli.spec.models import End, ResultCondition, Z
+
+PUSHES = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
 
 
 class Following(Protocol):
@@ -60,6 +63,20 @@ def conditions_of_wheels(rolling: Mapping[str, RollingEntry]) -> Iterator[Result
         if entry.friction is not None:
             why = f"the wheel {name} slips: it would take more friction than there is"
             yield below_zero(f"{name}_slips", f"couplings.{name}.grip", why, ends=False)
+
+
+def conditions_of_belts(couplings: Mapping[str, f.CouplingEntry]) -> Iterator[ResultCondition]:
+    """What is watched for of belts: where a strand would have to push."""
+    for name, entry in couplings.items():
+        if isinstance(entry, f.BeltEntry):
+            why, of = PUSHES.format(name, "{}"), f"couplings.{name}.slack"
+            yield below_zero(f"{name}_pushes", of, why, ends=False)._replace(given=entry.pretension)
+
+
+def at_least(least: float) -> str:
+    """A number above zero with four digits, rounded up: what is written so is enough."""
+    quantum = 10.0 ** (math.floor(math.log10(least)) - 3)
+    return f"{math.ceil(least / quantum) * quantum:.4g}"
 
 
 def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import heuncli
 from heuncli.errors import SolveError, SpecError
 from heuncli.oscillations.study import modes
 from heuncli.spec.load import load
@@ -56,8 +57,38 @@ def test_belt_that_would_push_is_told() -> None:
     found = solved(belt(pretension=30))
     turned = 5 / (0.02 + 0.2 / 4)
     need = (5 - 0.02 * turned) / RADII[0] / 2
-    assert any("strap" in said and f"{need:.6g} N" in said for said in found.warnings)
+    assert any("strap" in said and f"{math.ceil(need * 100) / 100:.2f} N" in said for said in found.warnings)
     near(found.couplings["strap"]["slack"], 30 - need, need, ROUNDING)
+
+
+@pytest.mark.parametrize(("until", "need"), [(1.0, 100), (0.25, 0.0), (0.255, 100 * math.exp(-0.25))])
+def test_belt_that_pushes_between_samples_is_told(until: float, need: float) -> None:
+    """A torque of 14 exp(-((t - 0.26)/0.01)**2) N m puts 200 N of that on the belt, and half of them on a strand."""
+    scene = belt()
+    scene["forces"]["motor"]["value"] = "14*exp(-((t - 0.26)/0.01)**2)"
+    scene["analysis"] = {"duration": 1, "samples": 3, "until": f"t > {until - 1e-9}"}
+    found = solved(scene)
+    begins = 0.26 - 0.01 * math.sqrt(math.log(100 / 60))
+    assert found.events["strap_pushes"]["time"][:1] == pytest.approx([begins] if need else [], abs=1e-7)
+    told = [said for said in found.warnings if "strap" in said]
+    assert bool(told) == bool(need)
+    if need:
+        assert f"t = {begins:.6g} s" in told[0] and f"{math.ceil(need * 100 - 1e-4) / 100:.4g} N" in told[0]
+
+
+def test_blow_through_a_belt() -> None:
+    """An impulse of 1 N m s: both strands share what turns the wheel, without the pretension; the table has it."""
+    scene = belt()
+    scene["impulses"] = {"hit": {"body": "pinion", "couple": [0, 0, 1]}}
+    scene["analysis"] = {"type": "impulse"}
+    r1, r2 = RADII
+    with pytest.warns(heuncli.HeunWarning, match="no pretension stands up to a blow"):
+        told = heuncli.solve(text=to_yaml(scene))
+    carried = (1 - 0.02 / (0.02 + 0.2 * (r1 / r2) ** 2)) / r1
+    for name, expected in (("force", carried), ("tight", carried / 2), ("slack", -carried / 2)):
+        assert float(told[f"impulses.0.couplings.strap.{name}"]) == pytest.approx(expected, rel=1e-12)
+    (line,) = (own for own in told.tables().splitlines() if own.split()[:1] == ["tight"])
+    assert f"{carried / 2:.6g}" in line and "N·s" in line
 
 
 def screw(**more: Any) -> dict[str, Any]:
@@ -217,3 +248,31 @@ def test_what_couplings_cannot_be_is_refused(scene: dict[str, Any], code: str) -
         solved(scene)
     assert {problem.code for problem in refused.value.problems} == {code}
     assert all(problem.hint and problem.location for problem in refused.value.problems)
+
+
+@pytest.mark.parametrize(("other", "since"), [("t**3", 0.0), ("t**2", 0.0), ("max(t - 0.5, 0)**3", 0.5)])
+@pytest.mark.parametrize("kind", ["gear", "ratio"])
+def test_drives_that_part_over_a_coupling_are_named(kind: str, other: str, since: float) -> None:
+    """They agree at the start, and up to when is told."""
+    scene = pair(teeth=[20, 40])
+    if kind == "ratio":
+        scene["couplings"]["mesh"] = {"type": "ratio", "of": ["p", "w"], "factors": [1, 2]}
+    scene["joints"]["p"].pop("initial")
+    scene["drives"] = {"one": {"joint": "p", "angle": "10*t"}, "two": {"joint": "w", "angle": f"-5*t - {other}"}}
+    scene["forces"] = {}
+    scene["analysis"] = {"duration": 1, "samples": 3}
+    with pytest.raises(SolveError) as refused:
+        solved(scene)
+    (problem,) = refused.value.problems
+    assert problem.code == "rates-do-not-fit" and problem.about == "couplings.mesh" and problem.hint
+    assert "drives one and two" in problem.message and f"t = {since:g} s" in problem.message
+
+
+def test_what_two_drives_leave_open_of_teeth() -> None:
+    """Where both gears are driven alike nothing tells the tooth force: its parts are open with it, but for none."""
+    scene = pair(teeth=[20, 40])
+    scene["joints"]["p"].pop("initial")
+    scene["drives"] = {"one": {"joint": "p", "angle": "10*t"}, "two": {"joint": "w", "angle": "-5*t"}}
+    found = solved(scene).couplings["mesh"]
+    assert all(np.isnan(found[name]).all() for name in ("force", "radial", "normal"))
+    assert not found["axial"].any()

@@ -136,3 +136,11 @@ def test_shares_have_errors_of_their_own() -> None:
         for unit in ("N", "N·m"):
             assert (f"{kind} by cause", unit) in made.magnitudes.errors
             assert np.isfinite(page.certain.error(f"{kind} by cause", unit))
+
+
+def test_couplings_are_told_by_cause(capsys: pytest.CaptureFixture[str]) -> None:
+    """The fan's braking torque of up to 30 N m at its radius of 0.1 m; the driven acceleration does the rest."""
+    assert enter(["run", str(SPECS / "belt_drive.yaml"), "--by-cause", "--only", "joints"]) == 0
+    table = capsys.readouterr().out.partition("COUPLINGS BY CAUSE")[2]
+    (line,) = (line for line in table.splitlines() if "force max" in line)
+    assert line.split()[-4:] == ["300.000", "60.328", "360.328", "360.328"]

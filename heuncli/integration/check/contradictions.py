@@ -17,6 +17,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
+from heuncli.integration.diagnosis.fighting_drives import fighting
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.run.errors import ClosuresLost
@@ -137,6 +138,9 @@ def forward(runner: Runner, good: State, t: float) -> State | None:
 def told(runner: Runner, good: State, bad: float, last: float) -> Problem:
     """The problem, with the loop concerned and its drives."""
     layout = runner.layout
+    begun = good.t if good.t > CLOSE * last else 0.0
+    if (problem := fighting(layout.mechanism, good.t + AHEAD * last, begun)) is not None:
+        return problem
     gaps = recovered(runner, max(bad, good.t + AHEAD * last), good.y).rows["gap"][0]
     worst = int(np.argmax(np.where(np.isfinite(gaps), np.abs(gaps), math.inf)))
     drives = drives_of(layout, next(island for island in layout.islands if worst in island.rows))

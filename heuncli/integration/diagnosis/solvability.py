@@ -45,7 +45,7 @@ def require_solvable(scene: PreparedScene, recovered: Recovered, wording: Wordin
             raise SolveError(freedom_without_inertia(scene, recovered, k))
     unmet = recovered.residual > recovered.may_stay
     if unmet.any():
-        raise SolveError(unmet_rows(recovered, int(np.flatnonzero(unmet)[0]), wording))
+        raise SolveError(unmet_rows(scene, recovered, int(np.flatnonzero(unmet)[0]), wording))
     layout, gravity = scene.layout, scene.mechanism.gravity
     for spin in scene.idle:
         rows = recovered.bodies[:, layout.place[spin.body]]
@@ -118,9 +118,13 @@ def require_directions(scene: PreparedScene, recovered: Recovered, begins: bool 
             raise SolveError(*problems)
 
 
-def unmet_rows(recovered: Recovered, instant: int, wording: Wording) -> Problem:
+def unmet_rows(scene: PreparedScene, recovered: Recovered, instant: int, wording: Wording) -> Problem:
     """The problem of closed chains that nothing found holds together."""
+    from heuncli.integration.diagnosis.fighting_drives import fighting
+
     t, residual = float(recovered.times[instant]), float(recovered.residual[instant])
+    if (problem := fighting(scene.mechanism, t, t)) is not None:
+        return problem
     message = f"at t = {t:.9g} s the {wording.answers} leave {residual:.1g} of what the closed chains ask of them unmet"
     return Problem("closure-lost", message, hint="a singular pose, or joints that contradict each other by a little")
 

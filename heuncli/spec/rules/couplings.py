@@ -93,11 +93,17 @@ def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("belt-name")
 def belt_name(draft: DraftDocument) -> Iterator[Violation]:
-    """The pretension of a belt is a load by the belt's name."""
+    """The pretension of a belt is a load by the belt's name, and where it would push an event."""
     for name, belt in draft.document.couplings.items():
-        if isinstance(belt, BeltEntry) and name in draft.names.entries["forces"]:
+        if not isinstance(belt, BeltEntry):
+            continue
+        if name in draft.names.entries["forces"]:
             message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
             yield Violation(("couplings", name), message, "give one of them another name", key=True)
+        event = f"{name}_pushes"
+        if event in draft.document.analysis.events:
+            message = f"'{event}' is taken: so the belt's own event is called"
+            yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
 
 
 @rule("coupling-sizes")

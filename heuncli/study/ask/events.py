@@ -23,12 +23,14 @@ from heuncli.results import Array, Block, Results, Status
 from heuncli.results_paths import find
 from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
 from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
+from heuncli.spec.resolve_couplings import at_least
 from heuncli.study.ask.measure import report_of, stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, impulses_of
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.crossings import Crossings, crossings
+from heuncli.study.search.extremes import search
 from heuncli.study.solve.history import History, resample
 
 Solve = Callable[[Spec], Study]  # how a spec is solved that differs in its instants or conditions alone
@@ -49,8 +51,8 @@ def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
         (t for c in conditions if isinstance(c, ResultCondition) and (t := ends_at(c, found)) is not None), default=None
     )
     if first is not None and first < study.results.time[-1]:
-        return ended(study, found, first, solve)
-    return told(replace(study, changes=found))
+        return ended(study, found, first, solve, reasons(study, setup, found, first))
+    return told(replace(study, changes=found), reasons(study, setup, found, float(study.history.times[-1])))
 
 
 def ends_at(condition: WatchedCondition, found: Mapping[str, Changes]) -> float | None:
@@ -60,8 +62,10 @@ def ends_at(condition: WatchedCondition, found: Mapping[str, Changes]) -> float 
     return float(became[0]) if condition.ends and len(became) else None
 
 
-def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve) -> Study:
+def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve, why: Mapping[str, str]) -> Study:
     """The motion of a study up to the instant t at which its last condition becomes true; found: all its changes.
+
+    why: as of `reasons`.
 
     Where something strikes, rests or jumps there, what holds behind it is told: the run goes on for a moment.
     """
@@ -73,7 +77,7 @@ def ended(study: Study, found: Mapping[str, Changes], t: float, solve: Solve) ->
         shorter = up_to(shorter, jump_at(shorter.history, t))
     last = float(shorter.results.time[-1])
     changes = {name: changes.known_by(t, last) for name, changes in found.items()}
-    return told(replace(shorter, spec=study.spec, changes=changes))
+    return told(replace(shorter, spec=study.spec, changes=changes), why)
 
 
 def jump_at(history: History, t: float) -> float:
@@ -147,6 +151,10 @@ class WatchedNumber(NamedTuple):
         most = self.study.instants_at_once
         return np.concatenate([self._part(times[i : i + most]) for i in range(0, len(times), most)])
 
+    def column(self, times: Array) -> Array:
+        """The same as the only column of a search, (n, 1)."""
+        return self.sample(times)[:, None]
+
     def _part(self, times: Array) -> Array:
         values, condition = self.values(times), self.condition
         limit = condition.limit * abs(condition.limit) if self.even else condition.limit
@@ -182,9 +190,28 @@ class WatchedNumber(NamedTuple):
 
 def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes:
     """When a number of the results comes below its limit, or above it, and back; up to the horizon."""
+    times = looked_at(study)
+    number, keys = watched(study, setup, condition, times)
+    h = number.sample(times)
+    error = number.error(keys, h)
+    found = crossings(number.sample, times, h, error * (2.0 * abs(condition.limit) + error) if number.even else error)
+    if found.gaps:
+        study.later_warnings[NOT_TOLD.format(condition.name, condition.of)] = None
+    if not found.complete:
+        study.later_warnings[TOO_MANY.format(condition.name)] = None
+    return Changes(condition.name, found.begins, found.times, found.up, at_jumps(study, found))
+
+
+def looked_at(study: Study) -> Array:
+    """The instants between which conditions are searched for, up to the horizon."""
     times, horizon = study.search_times, study.results.horizon
-    if horizon is not None:
-        times = times[times < horizon]
+    return times if horizon is None else times[times < horizon]
+
+
+def watched(
+    study: Study, setup: Setup, condition: ResultCondition, times: Array
+) -> tuple[WatchedNumber, tuple[str, ...]]:
+    """The number of a condition, and the keys under which it stands in the results."""
     wanted = report_of(condition.of)
     asked = find(study.reports_at(times[:1], wanted if wanted is not None else frozenset(), setup), condition.of)
     even, along = asked.of_vectors or asked.keys[-1] in MAGNITUDES, CUT in asked.axes
@@ -192,15 +219,27 @@ def on_result(study: Study, setup: Setup, condition: ResultCondition) -> Changes
         from heuncli.study.search.stretches import stretched
 
         setup = stretched(setup, asked.bent)
-    number = WatchedNumber(study, setup, condition, even, along)
-    h = number.sample(times)
-    error = number.error(asked.keys, h)
-    found = crossings(number.sample, times, h, error * (2.0 * abs(condition.limit) + error) if even else error)
-    if found.gaps:
-        study.later_warnings[NOT_TOLD.format(condition.name, condition.of)] = None
-    if not found.complete:
-        study.later_warnings[TOO_MANY.format(condition.name)] = None
-    return Changes(condition.name, found.begins, found.times, found.up, at_jumps(study, found))
+    return WatchedNumber(study, setup, condition, even, along), asked.keys
+
+
+def reasons(study: Study, setup: Setup, found: Mapping[str, Changes], last: float) -> dict[str, str]:
+    """What conditions that entries bring with them mean, in words, of a motion up to an instant; found: their changes.
+
+    Setup: of all that they need. Of what is given too small it is told by the furthest that the number comes.
+    """
+    words = {}
+    for condition in study.spec.analysis.conditions:
+        if not (isinstance(condition, ResultCondition) and condition.why):
+            continue
+        changes, words[condition.name] = found[condition.name], condition.why
+        if condition.given is not None and (changes.begins or (changes.times[changes.to] <= last).any()):
+            times = looked_at(study)
+            times = np.append(times[times < last], last) if last < times[-1] else times
+            number, keys = watched(study, setup, condition, times)
+            error = np.array([number.error(keys, number.sample(times))])
+            lacking = search(number.column, times, errors=error, sides=(1.0,)).high[0]
+            words[condition.name] = condition.why.format(at_least(condition.given + float(lacking)))
+    return words
 
 
 def at_jumps(study: Study, found: Crossings) -> Array:
@@ -217,8 +256,8 @@ def at_jumps(study: Study, found: Crossings) -> Array:
 # What is told
 
 
-def told(study: Study) -> Study:
-    """The study with its events in the results, and a sentence on how it ended."""
+def told(study: Study, why: Mapping[str, str]) -> Study:
+    """The study with its events in the results, and a sentence on how it ended; why: as of `reasons`."""
     results, conditions = study.results, study.spec.analysis.conditions
     if EVENTS in study.options.reports:
         events = {c.name: block(c.text, study.changes[c.name]) for c in conditions}
@@ -228,10 +267,10 @@ def told(study: Study) -> Study:
         results = changed(results, events=events)
     for last in conditions:
         changes = study.changes[last.name]
-        if last.ends and not (isinstance(last, ResultCondition) and last.why):
+        if last.name in why:
+            results = with_reason(results, last, changes, why[last.name])
+        elif last.ends:
             results = ending(results, last, changes)
-        elif isinstance(last, ResultCondition) and last.why:
-            results = with_reason(results, last, changes)
     return replace(study, results=results)
 
 
@@ -258,15 +297,15 @@ def ending(results: Results, last: WatchedCondition, changes: Changes) -> Result
     return changed(results, status=status, model=results.model | {"until": [message]})
 
 
-def with_reason(results: Results, condition: ResultCondition, changes: Changes) -> Results:
+def with_reason(results: Results, condition: WatchedCondition, changes: Changes, why: str) -> Results:
     """The results with a sentence on a condition that an entry brings with it, if it ever is true."""
     if changes.begins:
-        return changed(results, warnings=(*results.warnings, f"at the start {condition.why}"))
+        return changed(results, warnings=(*results.warnings, f"at the start {why}"))
     became = np.flatnonzero(changes.to)
     if not len(became):
         return results
     k = int(became[0])
-    sentence = f"at t = {instant(float(changes.times[k]), float(changes.error[k]))} s {condition.why}"
+    sentence = f"at t = {instant(float(changes.times[k]), float(changes.error[k]))} s {why}"
     if condition.ends:
         status: Status = {"code": "stopped", "message": sentence}
         return changed(results, status=status, model=results.model | {"until": [sentence]})

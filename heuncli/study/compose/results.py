@@ -73,6 +73,7 @@ def compose(
             *warnings(setup, history, recovery, own.shown.get("joints", {}), known["balance_residual"]),
             *beside_singular_poses(own.unknown),
             *of_wheels(setup, history, own.shown, struck),
+            *of_belts(setup, recovery, own.shown, struck),
             *(rest.warnings if rest is not None else ()),
         ),
     )
@@ -108,6 +109,18 @@ def of_wheels(setup: Setup, history: History, shown: Block, struck: Impulses | N
 
     alone = at_the_instant(setup.spec, shown.get("couplings", {})) if history.checked is None else ()
     return (*alone, *(in_blows(setup.spec, struck) if struck is not None else ()))
+
+
+def of_belts(setup: Setup, recovery: Recovery, shown: Block, struck: Impulses | None) -> tuple[str, ...]:
+    """Warnings of belts that would push where no event tells it."""
+    if not any(own.type == "belt" for own in setup.spec.couplings.values()):
+        return ()
+    from heuncli.study.compose.belts import at_the_instant, in_blows  # few scenes have them
+
+    largest = recovery.load_magnitudes.by_unit["N"]
+    alone = setup.spec.analysis.type != "motion"
+    told = at_the_instant(setup.spec, shown.get("couplings", {}), largest) if alone else ()
+    return (*told, *(in_blows(setup.spec, struck) if struck is not None else ()))
 
 
 def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool) -> Impulses | None:

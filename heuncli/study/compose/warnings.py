@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numpy as np
-
 from heuncli import tolerances
 from heuncli.integration.diagnosis.off_sheaves import slanting
 from heuncli.mechanism.model import Mechanism
@@ -41,26 +39,7 @@ def warnings(
         *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, recovery, joints)),
         *singular,
         *slanting(setup.scene.layout, recovery.recovered),
-        *(pushing(recovery) if setup.scene.mechanism.couplings else ()),
     )
-
-
-def pushing(recovery: Recovery) -> list[str]:
-    """Sentences on belts of which a strand would have to push."""
-    lines = []
-    for own in recovery.couplings:
-        given = own.coupling.given
-        if given.type != "belt":
-            continue
-        lack = 0.5 * np.abs(own.carried) - given.pretension
-        if (lack > 0.0).any():
-            t = float(recovery.recovered.times[int(np.argmax(lack > 0.0))])
-            need = given.pretension + float(lack.max())
-            lines.append(
-                f"coupling {own.coupling.name}: at t = {t:.6g} s a strand of the belt would have to push; it needs a "
-                f"pretension of {need:.6g} N"
-            )
-    return lines
 
 
 def beside_singular_poses(unknown: Array) -> list[str]:

@@ -192,7 +192,10 @@ class LoadErrors:
                 self.take(("drives", "torque" if turns else "thrust"), load.drive, rounding, of)
 
     def add_foundation(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
-        """Total of the foundation, its elements and the mass effects."""
+        """Total of the foundation, its elements and the mass effects.
+
+        Of a wheel that rolls the orbital and the spin part err against each other: each is told, so each is compared.
+        """
         mechanism, origin = self.setup.scene.mechanism, self.setup.about
         arm = states.centre - origin
         far = np.abs(arm).max(axis=(1, 2))
@@ -203,7 +206,8 @@ class LoadErrors:
         elements = [on for action in inner if (on := action.on_ground()) is not None]
         wrenches = [
             ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
-            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma) + terms.spin, axis=1)),
+            ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1)),
+            ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1)),
             *(("elements", force, moment) for force, moment, _ in elements),
         ]
         for kind, force, moment in wrenches:
