@@ -37,7 +37,8 @@ class Faces(NamedTuple):
     """Triangles (m, 3, 3), their unit normals (m, 3) and the heights of their planes over the origin (m,).
 
     corners (m, 3): their numbers; joined (m, 3): which of them are one or joined by triangles of hardly a width;
-    double (m,): twice their areas; narrow (m,): which are so narrow that their planes are not asked.
+    double (m,): twice their areas; narrow (m,): which are so narrow that their planes are not asked;
+    joins: whether any corners are joined.
     """
 
     places: Array
@@ -47,6 +48,7 @@ class Faces(NamedTuple):
     joined: Numbers
     double: Array
     narrow: Mask
+    joins: bool
 
 
 def require_no_crossing(corners: Array, triangles: Numbers, near: float) -> None:
@@ -84,7 +86,10 @@ def faces_of(corners: Array, triangles: Numbers, near: float) -> Faces:
     normals /= np.where(double > 0.0, double, 1.0)[:, None]
     a, b, c = triangles[double <= JOINING * near * longest].T
     joined = components(len(corners), np.append(a, b), np.append(b, c))
-    return Faces(places, normals, (normals * places[:, 0]).sum(axis=1), triangles, joined[triangles], double, narrow)
+    joins = bool((joined != np.arange(len(corners))).any())
+    return Faces(
+        places, normals, (normals * places[:, 0]).sum(axis=1), triangles, joined[triangles], double, narrow, joins
+    )
 
 
 def principal_axes(corners: Array) -> Array:
@@ -110,11 +115,11 @@ def _not_aside(faces: Faces, a: Numbers, b: Numbers, near: float) -> tuple[Numbe
     behind, kept = np.zeros(len(a), dtype=bool), np.ones(len(a), dtype=bool)
     for one, other, own in ((a, b, of_a), (b, a, of_b)):
         h = _heights(faces, one, other).T
-        before = np.logical_or.reduce([(h[i] >= -near) & ~own[i][apart] for i in range(3)])
-        lowest, highest = (extreme(extreme(h[0], h[1]), h[2]) for extreme in (np.minimum, np.maximum))
+        lowest = np.minimum.reduce([np.where(own[i][apart], np.inf, h[i]) for i in range(3)])
+        highest = np.maximum.reduce([np.where(own[i][apart], -np.inf, h[i]) for i in range(3)])
         known = ~faces.narrow[other]
-        behind |= (before & (lowest < -near) & known) | ((lowest >= -near) & (highest <= near))
-        kept &= ((lowest <= near) & (highest >= -near)) | ~known  # what meets a triangle meets its plane
+        behind |= ((highest >= -near) & (lowest < -near) & known) | ((lowest >= -near) & (highest <= near))
+        kept &= ((lowest <= near) & (highest >= -near)) | ~known  # the corners that are not shared, too
     kept &= behind
     return a[kept], b[kept]
 
@@ -135,8 +140,11 @@ def _pierced(faces: Faces, a: Numbers, b: Numbers, near: float, beside: float) -
     for edge in NEXT:
         for i, j in (edge, edge[::-1]):
             own = np.flatnonzero(before[:, i] & behind[:, j])
-            at_it = [(faces.joined[a[own], k, None] == faces.joined[b[own]]).any(axis=1) for k in (i, j)]
-            own = own[~(at_it[0] & (at_it[1] | (h[own, i] <= near)))]
+            if not len(own):
+                continue
+            held = np.flatnonzero((h[own, i] <= near) | faces.joins)
+            at_it = [(faces.joined[a[own[held]], k, None] == faces.joined[b[own[held]]]).any(axis=1) for k in (i, j)]
+            own = np.delete(own, held[at_it[0] & (at_it[1] | (h[own[held], i] <= near))])
             p, q, above = faces.places[a[own], i], faces.places[a[own], j], np.maximum(h[own, i], 0.0)
             point = p + (above / (above - h[own, j]))[:, None] * (q - p)
             met[own] |= _is_inside(point, faces.places[b[own]], faces.normals[b[own]], beside)
@@ -151,12 +159,12 @@ def _is_inside(point: Array, triangle: Array, normal: Array, beside: float) -> M
         inward = crossed(normal, edge)
         length = np.sqrt((edge * edge).sum(axis=1))
         inside &= (inward * (point - triangle[:, i])).sum(axis=1) >= -beside * length
-    return inside
+    return np.asarray(inside)
 
 
 def _on_each_other(faces: Faces, a: Numbers, b: Numbers, near: float) -> Mask:
     """Whether two triangles of one plane, turned alike, have an area in common."""
-    met = np.einsum("ki,ki->k", faces.normals[a], faces.normals[b]) > 0.0
+    met: Mask = np.asarray(np.einsum("ki,ki->k", faces.normals[a], faces.normals[b]) > 0.0)
     met &= (most(np.abs(_heights(faces, a, b))) <= near) & ~faces.narrow[a] & ~faces.narrow[b]
     on = np.flatnonzero(met)
     for one, other in ((a, b), (b, a)):  # no edge of either keeps them apart
