@@ -34,7 +34,7 @@ def spindle(middle: object, ring: Array, height: float) -> Array:
     following = np.roll(base, -1, axis=0)
     up, down = (np.broadcast_to([0.0, 0.0, z], base.shape) for z in (height, -height))
     parts = [np.stack(three, axis=1) for three in ((base, following, up), (following, base, down))]
-    return np.concatenate(parts) + np.array(middle, dtype=float)
+    return np.asarray(np.concatenate(parts) + np.array(middle, dtype=float))
 
 
 def circle(n: int, radius: float) -> Array:
@@ -108,7 +108,7 @@ def solid(rng: np.random.Generator) -> Array:
                 return t.box(low, high)
             case 2:
                 square = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)]) * float(rng.integers(1, 3))
-                return np.roll(spindle(np.zeros(3), square, 1.0), int(rng.integers(3)), axis=2) + places[0]
+                return np.asarray(np.roll(spindle(np.zeros(3), square, 1.0), int(rng.integers(3)), axis=2) + places[0])
 
 
 @pytest.mark.parametrize("seed", range(3))
