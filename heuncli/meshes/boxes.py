@@ -58,10 +58,11 @@ def _below(level: int, a: Numbers, b: Numbers, lows: list[Array], highs: list[Ar
     keep = one <= other if level > 1 else one < other
     one, other = one[keep], other[keep]
     low, high = lows[level - 1], highs[level - 1]
-    meet = np.ones(len(one), dtype=bool)
     for axis in range(3):
-        meet &= (low[one, axis] <= high[other, axis]) & (low[other, axis] <= high[one, axis])
-    return one[meet], other[meet]
+        below, above = low[:, axis].copy(), high[:, axis].copy()
+        meet = (below[one] <= above[other]) & (below[other] <= above[one])
+        one, other = one[meet], other[meet]
+    return one, other
 
 
 def _of_members(extreme: np.ufunc, values: Array, members: int) -> Array:

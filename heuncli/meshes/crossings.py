@@ -36,16 +36,19 @@ HARDLY = 1e-9  # of near: what shared rims may lie apart by the computing
 class Faces(NamedTuple):
     """Triangles (m, 3, 3), their unit normals (m, 3) and the heights of their planes over the origin (m,).
 
-    joined (m, 3): of their corners, which are one or are joined by triangles of hardly a width; double (m,): twice their
-    areas; narrow (m,): which are so narrow that their planes are not asked.
+    corners (m, 3): their numbers; joined (m, 3): which of them are one or joined by triangles of hardly a width;
+    double (m,): twice their areas; narrow (m,): which are so narrow that their planes are not asked;
+    joins: whether any corners are joined.
     """
 
     places: Array
     normals: Array
     offsets: Array
+    corners: Numbers
     joined: Numbers
     double: Array
     narrow: Mask
+    joins: bool
 
 
 def require_no_crossing(corners: Array, triangles: Numbers, near: float) -> None:
@@ -83,7 +86,10 @@ def faces_of(corners: Array, triangles: Numbers, near: float) -> Faces:
     normals /= np.where(double > 0.0, double, 1.0)[:, None]
     a, b, c = triangles[double <= JOINING * near * longest].T
     joined = components(len(corners), np.append(a, b), np.append(b, c))
-    return Faces(places, normals, (normals * places[:, 0]).sum(axis=1), joined[triangles], double, narrow)
+    joins = bool((joined != np.arange(len(corners))).any())
+    return Faces(
+        places, normals, (normals * places[:, 0]).sum(axis=1), triangles, joined[triangles], double, narrow, joins
+    )
 
 
 def principal_axes(corners: Array) -> Array:
@@ -100,23 +106,27 @@ def _suspects(faces: Faces, a: Numbers, b: Numbers, near: float) -> tuple[Number
 
 
 def _not_aside(faces: Faces, a: Numbers, b: Numbers, near: float) -> tuple[Numbers, Numbers]:
-    """The pairs of which the one may go behind the other, or that lie in one plane."""
-    kept = np.zeros(len(a), dtype=bool)
-    for one, other in ((a, b), (b, a)):
-        h = _heights(faces, one, other)
-        lowest = least(h)
-        behind = (lowest < -near) & (most(h) >= -near)
-        kept |= (behind & ~faces.narrow[other]) | ((lowest >= -near) & (most(h) <= near))
+    """The pairs of which the one may go behind the other, or that lie in one plane; none that share an edge."""
+    shared = [[faces.corners[a, i] == faces.corners[b, j] for j in range(3)] for i in range(3)]
+    of_a = [each[0] | each[1] | each[2] for each in shared]
+    of_b = [shared[0][j] | shared[1][j] | shared[2][j] for j in range(3)]
+    apart = ~(of_a[0] & of_a[1] | of_a[1] & of_a[2] | of_a[2] & of_a[0])
+    a, b = a[apart], b[apart]
+    behind, kept = np.zeros(len(a), dtype=bool), np.ones(len(a), dtype=bool)
+    for one, other, own in ((a, b, of_a), (b, a, of_b)):
+        h = _heights(faces, one, other).T
+        lowest = np.minimum.reduce([np.where(own[i][apart], np.inf, h[i]) for i in range(3)])
+        highest = np.maximum.reduce([np.where(own[i][apart], -np.inf, h[i]) for i in range(3)])
+        known = ~faces.narrow[other]
+        behind |= ((highest >= -near) & (lowest < -near) & known) | ((lowest >= -near) & (highest <= near))
+        kept &= ((lowest <= near) & (highest >= -near)) | ~known  # the corners that are not shared, too
+    kept &= behind
     return a[kept], b[kept]
 
 
 def _heights(faces: Faces, of: Numbers, over: Numbers) -> Array:
     """Of the corners of triangles over the planes of others, (k, 3)."""
-    n, offset, places = faces.normals[over], faces.offsets[over], faces.places[of]
-    out = np.empty((len(of), 3))
-    for i in range(3):
-        out[:, i] = (places[:, i] * n).sum(axis=1) - offset
-    return out
+    return np.asarray(np.einsum("kij,kj->ki", faces.places[of], faces.normals[over]) - faces.offsets[over, None])
 
 
 def _pierced(faces: Faces, a: Numbers, b: Numbers, near: float, beside: float) -> Mask:
@@ -125,15 +135,19 @@ def _pierced(faces: Faces, a: Numbers, b: Numbers, near: float, beside: float) -
     It may start at b, but not at a corner that is one with a corner of b, or is joined to it; nor may both its ends be.
     """
     h = _heights(faces, a, b)
+    behind, before = h < -near, (h >= -near) & ~faces.narrow[b, None]
     met = np.zeros(len(a), dtype=bool)
     for edge in NEXT:
-        for behind, before in (edge, edge[::-1]):
-            own = np.flatnonzero((h[:, behind] < -near) & (h[:, before] >= -near) & ~faces.narrow[b])
-            at_it = [(faces.joined[a[own], i, None] == faces.joined[b[own]]).any(axis=1) for i in (before, behind)]
-            own = own[~(at_it[0] & (at_it[1] | (h[own, before] <= near)))]
-            p, q = faces.places[a[own], before], faces.places[a[own], behind]
-            part = np.maximum(h[own, before], 0.0) / (np.maximum(h[own, before], 0.0) - h[own, behind])
-            met[own] |= _is_inside(p + part[:, None] * (q - p), faces.places[b[own]], faces.normals[b[own]], beside)
+        for i, j in (edge, edge[::-1]):
+            own = np.flatnonzero(before[:, i] & behind[:, j])
+            if not len(own):
+                continue
+            held = np.flatnonzero((h[own, i] <= near) | faces.joins)
+            at_it = [(faces.joined[a[own[held]], k, None] == faces.joined[b[own[held]]]).any(axis=1) for k in (i, j)]
+            own = np.delete(own, held[at_it[0] & (at_it[1] | (h[own[held], i] <= near))])
+            p, q, above = faces.places[a[own], i], faces.places[a[own], j], np.maximum(h[own, i], 0.0)
+            point = p + (above / (above - h[own, j]))[:, None] * (q - p)
+            met[own] |= _is_inside(point, faces.places[b[own]], faces.normals[b[own]], beside)
     return met
 
 
@@ -145,13 +159,13 @@ def _is_inside(point: Array, triangle: Array, normal: Array, beside: float) -> M
         inward = crossed(normal, edge)
         length = np.sqrt((edge * edge).sum(axis=1))
         inside &= (inward * (point - triangle[:, i])).sum(axis=1) >= -beside * length
-    return inside
+    return np.asarray(inside)
 
 
 def _on_each_other(faces: Faces, a: Numbers, b: Numbers, near: float) -> Mask:
     """Whether two triangles of one plane, turned alike, have an area in common."""
-    met = most(np.abs(_heights(faces, a, b))) <= near
-    met &= ((faces.normals[a] * faces.normals[b]).sum(axis=1) > 0.0) & ~faces.narrow[a] & ~faces.narrow[b]
+    met: Mask = np.asarray(np.einsum("ki,ki->k", faces.normals[a], faces.normals[b]) > 0.0)
+    met &= (most(np.abs(_heights(faces, a, b))) <= near) & ~faces.narrow[a] & ~faces.narrow[b]
     on = np.flatnonzero(met)
     for one, other in ((a, b), (b, a)):  # no edge of either keeps them apart
         for i, j in NEXT:

@@ -9,6 +9,7 @@ read: the order of the corners says what is outside.
 from __future__ import annotations
 
 import re
+import warnings
 
 import numpy as np
 
@@ -25,6 +26,10 @@ FORM = (
     b"facet", b"normal", None, None, None, b"outer", b"loop", *((b"vertex", None, None, None) * 3),
     b"endloop", b"endfacet",
 )  # fmt: skip
+
+NUMBERS = b"0123456789+-.eE \t\r\n"
+LETTERS = b"".join(word for word in FORM if word).translate(None, NUMBERS)  # what of a facet is left without them
+MARKS = ((b"endfacet", b""), (b"endloop", b""), (b"outer loop", b""), (b"facet normal", b"nan"), (b"vertex", b"nan"))
 
 
 def read_stl(content: bytes) -> Soup:
@@ -48,7 +53,39 @@ def _soup(places: Array) -> Soup:
 
 def _as_text(content: bytes) -> Array:
     """The corners (m, 3, 3) of a file that is text; of several solids all."""
-    words = SOLID.sub(b" ", content).split()
+    begin, end = content.find(b"\n"), content.rfind(b"endsolid")
+    places = _of_columns(content[begin:end]) if 0 <= begin < end else None
+    return _of_words(SOLID.sub(b" ", content).split()) if places is None else places
+
+
+def _of_columns(text: bytes) -> Array | None:
+    """The corners by the numbers of the file all at once; None where it is not written as is usual.
+
+    A mark that is no number stands for each of the words with numbers behind them: so many between the marks they are.
+    """
+    letters = text.translate(None, NUMBERS)
+    count = len(letters) // len(LETTERS)
+    if not count or letters.lower() != LETTERS * count:
+        return None
+    if b"facet" not in text[: text.find(b"vertex")]:
+        return None
+    for word, mark in MARKS:
+        text = text.replace(word, mark)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", DeprecationWarning)
+        try:
+            numbers = np.fromstring(text, sep=" ")
+        except (DeprecationWarning, ValueError):
+            return None
+    if len(numbers) != 16 * count:
+        return None
+    rows = numbers.reshape(count, 4, 4)
+    fits = np.isnan(rows[:, :, 0]).all() and np.isfinite(rows[:, 1:, 1:]).all()
+    return np.ascontiguousarray(rows[:, 1:, 1:]) if fits else None
+
+
+def _of_words(words: list[bytes]) -> Array:
+    """The same word by word, told where one is missing."""
     whole = len(words) // len(FORM)
     for k, word in enumerate(FORM):
         if word is None:

@@ -1,4 +1,4 @@
-"""What gears and belts look like: pitch circles on their wheels, in body axes, and strands on what carries these."""
+"""What gears and belts look like: pitch circles on wheels, pitch lines on racks, strands on what carries the wheels."""
 
 from __future__ import annotations
 
@@ -44,6 +44,7 @@ def pitch_lines(spec: Spec) -> tuple[Lines, Lines]:
                 P = mesh_of(own, carrier, first, second, at).P
                 radii = [float(np.sqrt(m.arm(P) @ m.arm(P))) for m in (first, second)]
                 heights = [float((P - m.point) @ m.axis) for m in (first, second)]
+                wheel = next((r for m, r in zip((first, second), radii, strict=True) if m.turns), 0.0)
             else:
                 radii, off = list(own.radii), float((first.point - second.point) @ second.axis)
                 heights = [0.0, off]
@@ -53,6 +54,8 @@ def pitch_lines(spec: Spec) -> tuple[Lines, Lines]:
         for k, member, r, height in zip(of, (first, second), radii, heights, strict=True):
             if member.turns:
                 circles[names[member.body]].append(circle(joints, bodies, k, member, r, height))
+            elif isinstance(own, Gear):
+                circles[names[member.body]].append(pitch_line(joints[k], bodies, member, P, wheel))
     return {b: tuple(x) for b, x in circles.items()}, {b: tuple(x) for b, x in straight.items()}
 
 
@@ -63,3 +66,14 @@ def circle(joints: Sequence[Any], bodies: Sequence[Any], k: int, member: GearMem
     turn = np.linspace(0.0, 2.0 * np.pi, CORNERS + 1)[:, None]
     found: Array = point + height * axis + r * (np.cos(turn) * e + np.sin(turn) * f)
     return found
+
+
+def pitch_line(joint: Any, bodies: Sequence[Any], member: GearMember, P: Array, wheel: float) -> Array:
+    """A rack's line through the pitch point P, in its body's axes, as long as one turn of the wheel, (2, 3)."""
+    point, axis = line_on(joint, bodies, member.body)
+    given = (
+        None if i < 0 else bodies[i].rotation for i in (joint.a if joint.b == member.body else joint.b, member.body)
+    )
+    carrier, own = (np.eye(3) if R is None else R for R in given)
+    at = point + own.T @ carrier @ (P - member.point)
+    return np.array([at - np.pi * wheel * axis, at + np.pi * wheel * axis])

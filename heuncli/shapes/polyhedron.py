@@ -226,9 +226,10 @@ class Polyhedron(Thick):
             plane = np.zeros(len(areas), dtype=np.intp)
             plane[line] = c.plane
             outer = areas > self.near * around
-            reach = np.full((len(areas), DIRECTIONS), -np.inf)
-            along = p @ np.array([np.cos(AROUND), np.sin(AROUND)])
-            np.maximum.at(reach, line, along)
+            by_line = np.argsort(line, kind="stable")
+            starts = np.searchsorted(line[by_line], np.arange(len(areas)))
+            along = np.array([np.cos(AROUND), np.sin(AROUND)]).T @ p[by_line].T
+            reach = np.maximum.reduceat(along, starts, axis=1).T
             planes.append(plane[outer])
             reaches.append(reach[outer])
         plane = np.concatenate([np.empty(0, np.intp), *planes])

@@ -55,6 +55,24 @@ def test_two_pieces_make_the_whole_wherever_the_plane_lies(name: str) -> None:
             assert difference(one + other, f.whole(), f.whole()) < 1e-14
 
 
+@pytest.mark.parametrize("name", BODIES)
+def test_a_piece_goes_over_smoothly_where_the_plane_meets_corners_edges_and_faces(name: str) -> None:
+    """Moved by a hair it loses what lies between: its cross-section, as it is on that side, times the hair."""
+    corners, (a, b, c) = BODIES[name].reshape(-1, 3), BODIES[name].transpose(1, 0, 2)
+    normals = np.cross(b - a, c - a)
+    k = int(np.argmax((normals**2).sum(axis=1)))
+    across = unit(np.cross(b[k] - a[k], [0.3, -0.5, 0.8]))
+    f, hair = body(BODIES[name], density=1.0), 1e-7
+    for n, at in ((unit(normals[k]), a[k]), (across, a[k]), (unit(np.array([0.3, -0.5, 0.8])), corners[-1])):
+        d = float(at @ n) + hair * np.array([-1.0, -0.5, 0.0, 0.5, 1.0])
+        lower, _, there, _, upper = beyond(f, n, d)
+        area = f.parts[0].area(n, d)[0]
+        for one, other, middle in ((lower, there, area[1]), (there, upper, area[3])):
+            assert one[3, 3] - other[3, 3] == pytest.approx(middle * hair, abs=1e-14 * f.whole()[3, 3] + 10.0 * hair**2)
+        reach = 1.0 + float((corners**2).sum(axis=1).max())  # of 1, x and x x
+        assert np.abs(lower - upper).max() <= 2.0 * hair * reach * max(area) + 1e-14 * np.abs(f.whole()).max()
+
+
 def clipped(triangles: Array, n: Array, d: float, density: float) -> Array:
     """The piece beyond a plane: of each tetrahedron between a triangle and the origin, with its sign."""
     P = np.zeros((4, 4))

@@ -34,7 +34,7 @@ def spindle(middle: object, ring: Array, height: float) -> Array:
     following = np.roll(base, -1, axis=0)
     up, down = (np.broadcast_to([0.0, 0.0, z], base.shape) for z in (height, -height))
     parts = [np.stack(three, axis=1) for three in ((base, following, up), (following, base, down))]
-    return np.concatenate(parts) + np.array(middle, dtype=float)
+    return np.asarray(np.concatenate(parts) + np.array(middle, dtype=float))
 
 
 def circle(n: int, radius: float) -> Array:
@@ -73,7 +73,8 @@ def test_what_goes_through_a_face_with_its_corners_in_it(n: int, middle: tuple[f
 
 def test_what_stands_beside_with_flush_tops_at_an_edge_or_a_corner() -> None:
     for low, high in (
-        ([1, 0.25, 0.25], [2, 0.75, 1]), ([1, 1, 0.25], [2, 2, 0.75]), ([1, 0.5, 1], [2, 1.5, 2]), ([1, 1, 1], [2, 2, 2]),
+        ([1, 0.25, 0.25], [2, 0.75, 1]), ([1, 1, 0.25], [2, 2, 0.75]),
+        ([1, 0.5, 1], [2, 1.5, 2]), ([1, 1, 1], [2, 2, 2]),
     ):  # fmt: skip
         assert verdict(UNIT, t.box(low, high)) == "ok", low
     assert verdict(UNIT, t.box([1, 1, 0], [2, 2, 1])) == "mesh-crosses-itself, touches"
@@ -107,7 +108,7 @@ def solid(rng: np.random.Generator) -> Array:
                 return t.box(low, high)
             case 2:
                 square = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)]) * float(rng.integers(1, 3))
-                return np.roll(spindle(np.zeros(3), square, 1.0), int(rng.integers(3)), axis=2) + places[0]
+                return np.asarray(np.roll(spindle(np.zeros(3), square, 1.0), int(rng.integers(3)), axis=2) + places[0])
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -141,4 +142,3 @@ def test_triangles_narrower_than_the_digits_are_refused() -> None:
     tube = t.cylinder(300, 0.5, 1.0, 0.3)
     assert verdict(tube) == "ok" == verdict(tube + 100.0)
     assert verdict(tube + 1e5) == "mesh-file"
-
