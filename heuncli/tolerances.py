@@ -318,6 +318,9 @@ KERNEL: dict[str, float] = {
     # rows of J turn threefold with what moves, so the least pivot keeps five eighths, Newton's method contracts by 3/5
     "branch_step": 0.125,
     "branch_beside": 0.7,  # other steps, few more; what differs then is rounding, or the branch
+    # of a motion that goes round a quintic over a step of m rad is off by m^6 / 46080: 33 steps a swing, and what comes
+    # near a limit by less is not told from what passes it; where it is passed, the closures tell
+    "branch_between": 1e-9,
     "branch_bend": 0.05,  # a sine's step is then two fifths of its period; extremes are looked for at four places in it
     # -- charts of attitudes
     # cube root of EPS: rounding of W, EPS kappa, is there what the straight last way to the half turn leaves, kappa^-2

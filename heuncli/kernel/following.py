@@ -7,6 +7,8 @@ turn: where coordinates move by m [rad, or of an island's length], J changes by 
 is well below its least pivot. Then Newton's method contracts at every instant of the step, one solution lies as near,
 and it is the one that moved there (Kantorovich). m is bounded, not sampled: the range of each drive over the step
 (enclosure.py), times what a unit of it moves. Deuflhard, Newton Methods for Nonlinear Problems (2004), ch. 5.
+What gears, belts and screws hold is linear in their coordinates, and J the same in every pose: in m count only
+coordinates that other rows are made of. Of gears the drives' laws keep steps so short that interpolation follows them.
 
 Where the pivot falls to nothing, steps do too: a singular pose is not passed, there what moves has a say in the branch.
 The work that is done is the gain of kinetic and potential energy.
@@ -38,6 +40,7 @@ if not cython.compiled:
     from heuncli.kernel.bushings import bushing_energy
     from heuncli.kernel.carried_points import place_of
     from heuncli.kernel.columns import apply_none, prescribe, stand_still
+    from heuncli.kernel.conditions import condition, condition_count
     from heuncli.kernel.course import set_time
     from heuncli.kernel.dense import clipped, interpolate, need_interpolant
     from heuncli.kernel.enclosure import enclose
@@ -49,7 +52,20 @@ if not cython.compiled:
     from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import Bounds, Jet, Program
     from heuncli.kernel.response import evaluate, respond, settle
-    from heuncli.kernel.scene import BUSHING_SHIFT, SHIFT, SPRING, TURN_SPRING, Body, Counter, Freedom, Load, Scene
+    from heuncli.kernel.scene import (
+        BUSHING_SHIFT,
+        MESH,
+        SHIFT,
+        SPRING,
+        TURN,
+        TURN_SPRING,
+        Body,
+        Closure,
+        Counter,
+        Freedom,
+        Load,
+        Scene,
+    )
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Method, Run
@@ -99,7 +115,7 @@ def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[Branch]) 
     gravity: Vec3 = scene.gravity
     scene.gravity = Vec3(0.0, 0.0, 0.0)
     for i in range(scene.freedom_count + scene.closure_count):
-        if branch.reach[i] >= 0.0:
+        if branch.travel[i] >= 0.0:
             stand_still(scene)
             for k in range(scene.freedom_count):
                 scene.freedoms[k].udot = 1.0 if k == i else 0.0
@@ -109,24 +125,39 @@ def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[Branch]) 
             apply_none(scene)
             respond(scene, True)
             shifts: cython.bint = i >= scene.freedom_count or scene.freedoms[i].kind == SHIFT
-            branch.reach[i] = farthest(scene, branch, 1.0 / branch.length if shifts else 1.0)
+            own: cython.double = 1.0 / branch.length if shifts else 1.0
+            bends: cython.bint = i >= scene.freedom_count or branch.bends[i] != 0
+            branch.travel[i] = farthest(scene, branch, own, False)
+            branch.reach[i] = farthest(scene, branch, own if bends else 0.0, True)
     scene.gravity = gravity
 
 
-def farthest(scene: cython.pointer[Scene], branch: cython.pointer[Branch], found: cython.double) -> cython.double:
-    """The largest of the coordinates' changes in the answer found, or what is given."""
+def is_linear(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.bint:
+    """Whether a row's gap is a sum of coordinates, each times a constant: it has the same J in every pose."""
+    i: cython.Py_ssize_t
+    for i in range(condition_count(row)):
+        kind: cython.int = condition(scene, row, i).kind
+        if kind != MESH and kind != TURN:
+            return False
+    return True
+
+
+def farthest(
+    scene: cython.pointer[Scene], branch: cython.pointer[Branch], found: cython.double, bending: cython.bint
+) -> cython.double:
+    """The largest of the coordinates' changes in the answer found, or what is given; bending: of those that turn J."""
     i: cython.Py_ssize_t
     x: cython.double
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        if not freedom.driven:
+        if not freedom.driven and (branch.bends[i] or not bending):
             x = fabs(freedom.udot)
             if freedom.kind == SHIFT:
                 x /= branch.length
             if not x <= found:
                 found = x
     for i in range(scene.body_count):
-        if scene.bodies[i].ball:
+        if scene.bodies[i].ball and (branch.bends[scene.freedom_count + i] or not bending):
             x = norm(scene.bodies[i].alpha)
             if not x <= found:
                 found = x
@@ -134,7 +165,7 @@ def farthest(scene: cython.pointer[Scene], branch: cython.pointer[Branch], found
 
 
 def moved_by_drives(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.double:
-    """How far any coordinate moves at most within the step tried [rad, of an island's length]."""
+    """How far any coordinate that J changes with moves at most within the step tried [rad, of an island's length]."""
     i: cython.Py_ssize_t
     n: cython.Py_ssize_t = scene.freedom_count
     program: Program
@@ -145,7 +176,7 @@ def moved_by_drives(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> c
         return 0.0
     set_time(scene.programs, run.t, clipped(run, run.stop))
     for i in range(n + scene.closure_count):
-        if branch.reach[i] >= 0.0:
+        if branch.reach[i] > 0.0:
             if i < n:
                 program = scene.freedoms[i].program
             else:
@@ -159,19 +190,24 @@ def bends_between(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyt
     """Whether a drive does more within the step tried than its ends tell: there it is looked at for extremes."""
     i: cython.Py_ssize_t
     for i in range(scene.freedom_count):
-        if scene.freedoms[i].driven and bends(scene, run, scene.freedoms[i].program):
+        if scene.freedoms[i].driven and bends(scene, run, scene.freedoms[i].program, i):
             return True
     for i in range(scene.closure_count):
-        if scene.closures[i].program.count and bends(scene, run, scene.closures[i].program):
+        if scene.closures[i].program.count and bends(scene, run, scene.closures[i].program, scene.freedom_count + i):
             return True
     return False
 
 
-def bends(scene: cython.pointer[Scene], run: cython.pointer[Run], program: Program) -> cython.bint:
+def bends(
+    scene: cython.pointer[Scene], run: cython.pointer[Run], program: Program, at: cython.Py_ssize_t
+) -> cython.bint:
     """Whether the acceleration of a drive is off, in the middle, that of the quintic by the values at both ends.
 
-    That is 3 (v1 - v0) / 2h - (a0 + a1) / 4. A drive whose rate hardly changes bends nowhere.
+    That is 3 (v1 - v0) / 2h - (a0 + a1) / 4. A drive whose rate hardly changes bends nowhere. What it moves has such a
+    quintic as its course between the ends, which is off by off h^2 / 24 a unit: of the sixth derivative an
+    acceleration has 3 h^4 / 8, a value h^6 / 64, both by 720. That is looked at where m does not see to it.
     """
+    travel: cython.double = run.branch.travel[at]
     first: Jet = jet(scene.programs, program, run.t)
     middle: Jet = jet(scene.programs, program, clipped(run, run.t + 0.5 * run.h))
     last: Jet = jet(scene.programs, program, clipped(run, run.stop))
@@ -179,7 +215,12 @@ def bends(scene: cython.pointer[Scene], run: cython.pointer[Run], program: Progr
     rate: cython.double = fabs(first.rate) + fabs(middle.rate) + fabs(last.rate)
     size: cython.double = fabs(first.second) + fabs(middle.second) + fabs(last.second)
     part: cython.double = scene.limits.branch_bend
-    return not fabs(off) <= part * (size + part * rate / run.h)
+    if not fabs(off) <= part * (size + part * rate / run.h):
+        return True
+    if not travel > run.branch.reach[at]:
+        return False
+    rounding: cython.double = scene.limits.rounding * run.h * (rate + run.h * size)
+    return not fabs(off) * run.h * run.h / 24.0 <= scene.limits.branch_between / travel + rounding
 
 
 # A step
@@ -269,7 +310,7 @@ def left_branch(scene: cython.pointer[Scene], run: cython.pointer[Run], gap: cyt
         return True
     for i in range(scene.freedom_count):
         freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[i])
-        if not freedom.driven:
+        if not freedom.driven and run.branch.bends[i]:
             x = fabs(run.z[freedom.q_at] - run.y[freedom.q_at])
             if not x <= most * (run.branch.length if freedom.kind == SHIFT else 1.0):
                 return True

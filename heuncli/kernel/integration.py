@@ -16,7 +16,7 @@ if not cython.compiled:
     from heuncli.kernel.chosen import chosen_width
     from heuncli.kernel.dense import clipped, polynomial
     from heuncli.kernel.events import PARTS, take_branches, watch_afresh
-    from heuncli.kernel.following import stand_here
+    from heuncli.kernel.following import is_linear, stand_here
     from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.memory import Memory
     from heuncli.kernel.programs import FREE, HELD
@@ -199,7 +199,9 @@ class Integration:
         most: cython.double = 0.0
         scene: cython.pointer[Scene] = cython.address(self.workspace.scene)
         branch: cython.pointer[Branch] = cython.address(self.run.branch)
-        branch.reach = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
+        branch.travel = self.memory.doubles([-1.0] * (scene.freedom_count + scene.closure_count))
+        branch.reach = self.memory.zeros(scene.freedom_count + scene.closure_count)
+        branch.bends = self.memory.ints(bytes(4 * (scene.freedom_count + scene.body_count)))
         branch.marks = self.memory.zeros(3 * scene.counter_count)
         for i in range(scene.body_count):
             body: cython.pointer[Body] = cython.address(scene.bodies[i])
@@ -212,12 +214,17 @@ class Integration:
         branch.length = 1.0 / most if most > 0.0 else scene.size
         for i in range(scene.closure_count):
             if scene.closures[i].program.count:
-                branch.reach[scene.freedom_count + i] = 0.0
+                branch.travel[scene.freedom_count + i] = 0.0
+            bends: cython.bint = not is_linear(scene, cython.address(scene.closures[i]))
             for n in range(scene.closures[i].path, scene.closures[i].path + scene.closures[i].path_count):
                 on: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
+                if bends:
+                    branch.bends[scene.freedom_count + scene.indices[n]] = 1
                 for k in range(on.first_freedom, on.end_freedom):
                     if scene.freedoms[k].driven:
-                        branch.reach[k] = 0.0
+                        branch.travel[k] = 0.0
+                    if bends:
+                        branch.bends[k] = 1
 
     def make_newton(self, method: dict[str, Any]) -> None:
         """The numbers of an implicit method, and room for the iteration for its stages."""

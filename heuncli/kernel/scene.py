@@ -381,6 +381,7 @@ class Limits(Record):
     pivot_noise: float  # what a step at the least of the lengths tried may be off by, likewise
     branch_step: float  # of the least pivot: how far coordinates move in a step along a branch
     branch_beside: float  # of that, how far what begins beside the start
+    branch_between: float  # [rad, of an island's length]: the course of what a drive moves, between a step's ends
     branch_bend: float  # of a drive's acceleration in a step: by how much its middle may be off what the ends tell
     half_turn: float  # cosine of half a turn: where it is less, Rodrigues' numbers have come to a half turn
     chart_turn: float  # of the turn that leads out of a chart of attitudes: a longer step is none

@@ -133,7 +133,9 @@ class Branch(Struct):
     pivot: float  # least of what is left of an independent row
     moved: float  # the most that any coordinate moves in the step
     energy: float  # kinetic and potential
-    reach: list[float]  # of each freedom, then each closure row: how far a unit of its drive moves any; -1: none
+    travel: list[float]  # of each freedom, then each closure row: how far a unit of its drive moves any; -1: none
+    reach: list[float]  # and how far any of those that turn J
+    bends: list[int]  # of each freedom, then each body that is a ball: whether it turns J
     marks: list[float]  # of each counted angle a direction across its axis, in b
 
 

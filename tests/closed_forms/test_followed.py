@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from heuncli.errors import SolveError
 from heuncli.integration.methods.dop853 import DOP853
 from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.results import Array, Results
+from tests.shared.gear_trains import pair
 from tests.shared.scenes import solved
 
 CRANK = """\
@@ -195,3 +198,51 @@ def test_beyond_the_reach_is_an_error_as_before() -> None:
         solved(text)
     (problem,) = raised.value.problems
     assert problem.code == "closure-lost" and "0.5" in problem.message
+
+
+def driven_pair(drive: str, **analysis: Any) -> dict[str, Any]:
+    """A pinion, turned as told, and a wheel that it turns back, a third as far."""
+    scene = pair(teeth=[20, 60])
+    scene["joints"]["p"].pop("initial")
+    del scene["forces"]
+    return scene | {"drives": {"motor": {"joint": "p", "angle": drive}}, "analysis": analysis}
+
+
+def test_gears_at_a_constant_rate_take_one_step() -> None:
+    """What they hold is the same in every pose: no turn of theirs needs a step."""
+    found = solved(driven_pair("200*pi*t", duration=1, samples=7))
+    assert found.model["method"] == FOLLOWED.name and found.work["steps"] == 1
+    assert np.abs(found.coordinates["w"]["angle"] + 200.0 * np.pi * found.time / 3.0).max() < 1e-12
+
+
+@pytest.mark.parametrize("rate", [2.0, 60.0])
+def test_a_gear_that_swings_passes_angles_when_it_should(rate: float) -> None:
+    """The drive's law alone keeps steps short: where the wheel passes, its closure tells."""
+    at = np.pi + np.arcsin(0.3)
+    ends = solved(driven_pair(f"sin({rate}*t)", duration=5, until="w.angle > 0.1"))
+    assert ends.model["method"] == FOLLOWED.name
+    assert abs(ends.events["until"]["time"][0] * rate - at) < 1e-10
+    assert ends.work["steps"] < 30
+    found = solved(driven_pair(f"sin({rate}*t)", duration=5, samples=41))
+    assert np.abs(found.coordinates["w"]["angle"] + np.sin(rate * found.time) / 3.0).max() < 1e-14
+    assert np.abs(found.coordinates["w"]["rate"] + rate * np.cos(rate * found.time) / 3.0).max() < 1e-13 * rate
+
+
+@pytest.mark.parametrize("up", [True, False])
+def test_a_four_bar_behind_a_gear_stays_on_its_branch(up: bool) -> None:
+    """Its crank turns by a pair of gears, ten turns of the motor for each of its own: as where it is driven itself."""
+    text = four_bar("0 deg", "2*pi*t", "duration: 3, samples: 4", up)
+    motor = "  motor: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {M: [0, 0, 0]}}\n"
+    geared = text.replace("bodies:\n", f"bodies:\n{motor}").replace("points: {O:", "points: {M: [0, -2, 0], O:", 1)
+    geared = geared.replace(
+        "  O: {type: pin", "  M: {type: pin, from: ground.M, to: motor.M, axis: [0, 0, 1]}\n  O: {type: pin"
+    )
+    geared = geared.replace('{joint: O, angle: "2*pi*t"}', '{joint: M, angle: "-20*pi*t"}')
+    geared += "couplings: {gears: {type: gear, of: [M, O], ratio: -10}}\n"
+    one, other = solved(text), solved(geared)
+    assert other.model["method"] == FOLLOWED.name
+    for name in ("A", "B", "C"):
+        for quantity, values in one.coordinates.get(name, {}).items():
+            size = max(1.0, float(np.abs(values).max()))
+            assert np.abs(other.coordinates[name][quantity] - values).max() < 1e-11 * size
+    assert other.work["steps"] < 2 * one.work["steps"]  # all rows together keep less of the least one
