@@ -87,8 +87,7 @@ def of_face(
     h: Array, P: Array, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array
 ) -> tuple[Array, Array, Array, Array]:
     """The same of a flat face across h. Of its sides that is the disc's from which it is away on the whole."""
-    h = h - np.sum(h * e, axis=1)[:, None] * e
-    h = h / np.sqrt(np.sum(h * h, axis=1))[:, None] * (1.0 if np.sum(h * C) >= 0.0 else -1.0)
+    h = h * (1.0 if np.sum(h * C) >= 0.0 else -1.0)
     k = cross_rows(e, h)
     turning = np.broadcast_to(g, h.shape)
     passing = slope[:, None] * w - cross_rows(e, C)

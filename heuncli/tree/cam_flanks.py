@@ -32,8 +32,11 @@ def require_flanks(layout: Layout) -> None:
 
 def fault(layout: Layout, cam: Coupling) -> Problem | None:
     """What is wrong with a cam, the first of what there may be; None of one that can be made."""
-    own = flank_of(layout, cam)
     about = f"couplings.{cam.name}"
+    if is_tilted(layout, cam):
+        message = f"the face of cam {cam.name} is not along the axis of its disc: its normal leans that way"
+        return Problem("cam-contact", message, hint="normal: across the disc's axis, in the follower's axes", about=about)
+    own = flank_of(layout, cam)
     if (own.falls_behind <= 0.0).any():
         where = angles(own, own.falls_behind <= 0.0)
         message = f"the face of cam {cam.name} turns as fast as its disc, or faster, at angles {where} of the disc"
@@ -50,6 +53,17 @@ def fault(layout: Layout, cam: Coupling) -> Problem | None:
         hint = "turn the axis of the follower's joint round, and with it the lift; or in a groove: two_sided: true"
         return Problem("cam-sense", message, hint=hint, about=about)
     return cut_away(own, cam, layout.mechanism.joints[cam.rows[0].parts[0].coordinates[0].joint].axis)
+
+
+def is_tilted(layout: Layout, cam: Coupling) -> bool:
+    """Whether a face is not parallel to its disc's axis."""
+    part = cam.rows[0].parts[0]
+    assert part.cam is not None
+    if part.cam.face is None:
+        return False
+    k, n = (x.joint for x in part.coordinates)
+    leans = float(layout.mechanism.joints[k].axis @ (layout.starts[n].R_ref @ part.cam.face))
+    return abs(leans) > tolerances.TYPED_AXES
 
 
 def cut_away(own: Flank, cam: Coupling, axis: Array) -> Problem | None:
