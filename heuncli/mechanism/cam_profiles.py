@@ -24,8 +24,8 @@ class Flank:
     (m, 3), the follower's point and the place of contact from the disc's axis on, its own axes; the radius of curvature
     of the flank (m,) [m]: not above zero where it is cut away, infinite where a roller's flank is straight or hollow.
 
-    leaves: (m,), how fast the follower leaves the disc across the flank by a unit of its coordinate. falls_behind: (m,),
-    how fast a flat face turns against the disc, by a unit of its angle the other way round; of a roller 1.
+    leaves: (m,), how fast the follower leaves the disc across the flank by a unit of its coordinate. falls_behind:
+    (m,), how fast a flat face turns against the disc, by a unit of its angle the other way round; of a roller 1.
     """
 
     angles: Array

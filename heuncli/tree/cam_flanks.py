@@ -35,7 +35,8 @@ def fault(layout: Layout, cam: Coupling) -> Problem | None:
     about = f"couplings.{cam.name}"
     if is_tilted(layout, cam):
         message = f"the face of cam {cam.name} is not along the axis of its disc: its normal leans that way"
-        return Problem("cam-contact", message, hint="normal: across the disc's axis, in the follower's axes", about=about)
+        hint = "normal: across the disc's axis, in the follower's axes"
+        return Problem("cam-contact", message, hint=hint, about=about)
     own = flank_of(layout, cam)
     if (own.falls_behind <= 0.0).any():
         where = angles(own, own.falls_behind <= 0.0)
@@ -44,12 +45,12 @@ def fault(layout: Layout, cam: Coupling) -> Problem | None:
         return Problem("cam-undercut", message, hint=hint, about=about)
     if (own.leaves <= 0.0).any() and (own.leaves >= 0.0).any():
         where = angles(own, own.leaves <= 0.0)
-        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at angles {where} of its "
-        message += "disc, elsewhere toward greater ones: between them it stands across and moves nothing"
+        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at angles {where} of "
+        message += "its disc, elsewhere toward greater ones: between them it stands across and moves nothing"
         hint = "guide the follower so that it never passes beside the disc's axis, where it moves along the flank"
         return Problem("cam-sense", message, hint=hint, about=about)
     if cam.rows[0].tension_only and (own.leaves < 0.0).all():
-        message = f"the lift of cam {cam.name} grows toward its disc: a cam that presses moves the follower away from it"
+        message = f"the lift of cam {cam.name} grows toward its disc: a cam that presses moves its follower away"
         hint = "turn the axis of the follower's joint round, and with it the lift; or in a groove: two_sided: true"
         return Problem("cam-sense", message, hint=hint, about=about)
     return cut_away(own, cam, layout.mechanism.joints[cam.rows[0].parts[0].coordinates[0].joint].axis)

@@ -8,8 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.balancing.study import balance
 from heuncli.errors import SolveError
 from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
 from heuncli.tree.cam_flanks import flank_of
 from tests.shared.cams import lift, table
 from tests.shared.folders import ROOT
@@ -174,17 +177,17 @@ def test_a_disc_that_turns_off_its_lift(end: float, driven: bool) -> None:
     if not driven:
         free = text[: text.index("drives:")] + text[text.index("couplings:") :]
         text = free.replace("axis: [0, 0, 1]}", f"axis: [0, 0, 1], initial: {{angle: 0, rate: {10 * rate}}}}}")
-    with pytest.raises(SolveError, match="shaft.angle from -40 to 40 deg") as told:
+    with pytest.raises(SolveError, match=r"shaft\.angle from -40 to 40 deg") as told:
         solved(text.replace("duration: 0.3", "duration: 1.0"))
     (problem,) = told.value.problems
     assert problem.code == "path-ends"
     assert f"until: shaft.angle {'>' if end > 0 else '<'} {end:g} deg" in problem.hint
     if driven:
         assert f"t = {math.radians(40.0) / 3.0:.6g}"[:10] in problem.message
-        until = text.replace("analysis: {", f"analysis: {{until: shaft.angle {'>' if end > 0 else '<'} {0.9 * end} deg, ")
-        results = solved(until)
+        until = f"until: shaft.angle {'>' if end > 0 else '<'} {0.9 * end} deg"
+        results = solved(text.replace("analysis: {", f"analysis: {{{until}, "))
         assert results.time[-1] == pytest.approx(math.radians(36.0) / 3.0, rel=1e-9)
-        with pytest.raises(SolveError, match="stands at shaft.angle = 57.29"):
+        with pytest.raises(SolveError, match=r"stands at shaft\.angle = 57\.29"):
             solved(text.replace(f"angle: {rate}*t", "angle: 1.0 + 0.1*t"))
 
 
@@ -202,9 +205,10 @@ def test_a_face_that_turns_with_its_disc() -> None:
     """A swinging face on a lift of one radian for each: the flank has no place that touches it."""
     rise = table(lambda x: 1.05 * x, -0.3, 0.3, 6)
     text = eccentric(rise, "flat, normal: [0, 1, 0]")
-    text = text.replace("guide: {type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}",
-                        "guide: {type: pin, from: {body: ground, at: [-0.3, 0.05, 0]}, to: {body: tappet, at: [-0.3, 0, 0]}, "
-                        "axis: [0, 0, 1]}")  # fmt: skip
+    pin = (
+        "{type: pin, from: {body: ground, at: [-0.3, 0.05, 0]}, to: {body: tappet, at: [-0.3, 0, 0]}, axis: [0, 0, 1]}"
+    )
+    text = text.replace("{type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}", pin)
     with pytest.raises(SolveError, match="turns as fast as its disc"):
         solved(text)
     solved(text.replace(rise, table(lambda x: -0.05 * x, -0.3, 0.3, 6)).replace("20.0*t", "0.2*sin(20*t)"))
@@ -263,3 +267,22 @@ def test_a_strike_turns_the_disc_back() -> None:
     total = results.energy["kinetic"] + results.energy["potential"] - results.energy["work"]
     near(total, total[0], float(results.energy["kinetic"].max()), 1e-8)
     assert results.energy["work"][-1] < -0.01
+
+
+def test_the_cycle_of_a_cam_that_presses() -> None:
+    """It is that of a follower guided on both sides, and says so; one that strikes has none; an open lift says why."""
+
+    def read(text: str) -> Spec:
+        return load("scene.yaml", text)
+
+    text = eccentric(lift(flat, 72), "flat, normal: [0, 1, 0]", more="two_sided: false")
+    pressed, guided = (balance(read(t)) for t in (text, text.replace("two_sided: false", "two_sided: true")))
+    assert any("the follower of cam cam is taken to stay" in note for note in pressed.notes)
+    assert not guided.notes
+    assert pressed.orders == guided.orders
+    first = next(row for row in pressed.orders["force"] if row.order == 1.0)
+    assert first.amplitude == pytest.approx(0.5 * E * 400.0, rel=1e-6)
+    with pytest.raises(SolveError, match=r"couplings\.cam may open and close"):
+        balance(read(text.replace("two_sided: false", "restitution: 0.5")))
+    with pytest.raises(SolveError, match=r"it ends at 40°: .* turns off its lift"):
+        balance(read(part_of_a_turn("angle: 20*t")))

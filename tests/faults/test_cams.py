@@ -1,4 +1,4 @@
-"""Cams as people mistype them: tables that fold, jump or are too short, joints that are each other's, faces that lean."""
+"""Cams as people mistype them: tables that fold or jump, joints that are each other's, faces that lean."""
 
 from __future__ import annotations
 

@@ -89,7 +89,7 @@ def test_a_cam_told_otherwise(seed: int, way: str) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_groove_is_told_from_either_side(seed: int) -> None:
-    """The follower's axis turned round, and the lift with it: the same motion and force, and the contact's sign turns."""
+    """The follower's axis turned round, and the lift with it: the same motion and force, the contact's sign turns."""
     scene = bare(seed)
     run = solved(moving(scene, TIMES, 1e-12))
     joint, table = scene["joints"]["j_follower"], scene["tables"]["lift"]
@@ -123,7 +123,7 @@ def test_newton_of_a_follower(joint: str, contact: str) -> None:
 
 
 def test_a_follower_on_the_axis_of_its_disc() -> None:
-    """No force across the flank moves it there, and no kernel divides by that: the gap and its rate are told all the same.
+    """No force across the flank moves it there, and no kernel divides by that: gap and rate are told all the same.
 
     Starts pass such poses on their way; a run cannot come to one, for its flank is refused.
     """
