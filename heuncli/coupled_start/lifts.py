@@ -28,7 +28,7 @@ def off_lifts(layout: Layout, t: float) -> Iterator[Problem]:
         if lift.first <= angle <= lift.last:
             continue
         first, last = math.degrees(lift.first), math.degrees(lift.last)
-        message = f"the disc of cam {coupling.name} stands at {joint.name}.angle = {math.degrees(angle):.6g} deg, off its "
-        message += f"lift, which covers {first:.6g} to {last:.6g} deg"
+        message = f"the disc of cam {coupling.name} stands at {joint.name}.angle = {math.degrees(angle):.6g} deg, off "
+        message += f"its lift, which covers {first:.6g} to {last:.6g} deg"
         hint = "turn it onto its lift (initial, or the drive), or give the lift a period"
         yield Problem("path-ends", message, hint=hint, about=f"couplings.{coupling.name}")

@@ -13,8 +13,8 @@ def prepare_coupled(mechanism: Mechanism, t0: float = 0.0, stages: Stages = ANEW
     """
     if not mechanism.couplings:
         return prepare(mechanism, t0, stages)
-    from heuncli.coupled_start.start import asked_of, fitted  # few scenes have couplings
     from heuncli.coupled_start.lifts import require_lifts
+    from heuncli.coupled_start.start import asked_of, fitted  # few scenes have couplings
     from heuncli.coupled_start.upright import require_upright
 
     def with_couplings(scene: PreparedScene) -> PreparedScene:

@@ -7,7 +7,7 @@ So f does on both what the gap does: it stands across L' w_b - w_a, in which the
 roller or a point that is the normal of the path of its centre in the disc; of a flat face f is along the face's normal,
 and Q where the face has no speed along it against the disc, a distance L' beside the axis where the follower slides.
 All of it lies across the disc's axis, in the plane through the follower's point. e x (L' w - e x C), C the follower's
-point from the disc's axis, points out of the disc wherever the path of that point runs, for it goes round the axis once.
+point from the disc's axis, points out of the disc wherever that point runs, for its path goes round the axis once.
 Where the flank has no place or no normal, or the follower is not moved by what stands across it, there is none (NaN).
 """
 

@@ -24,8 +24,8 @@ class Flank:
     (m, 3), the follower's point and the place of contact from the disc's axis on, its own axes; the radius of curvature
     of the flank (m,) [m]: not above zero where it is cut away, infinite where a roller's flank is straight or hollow.
 
-    leaves: (m,), how fast the follower leaves the disc across the flank by a unit of its coordinate. falls_behind: (m,),
-    how fast a flat face turns against the disc, by a unit of its angle the other way round; of a roller 1.
+    leaves: (m,), how fast the follower leaves the disc across the flank by a unit of its coordinate. falls_behind:
+    (m,), how fast a flat face turns against the disc, by a unit of its angle the other way round; of a roller 1.
     """
 
     angles: Array
@@ -87,8 +87,7 @@ def of_face(
     h: Array, P: Array, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array
 ) -> tuple[Array, Array, Array, Array]:
     """The same of a flat face across h. Of its sides that is the disc's from which it is away on the whole."""
-    h = h - np.sum(h * e, axis=1)[:, None] * e
-    h = h / np.sqrt(np.sum(h * h, axis=1))[:, None] * (1.0 if np.sum(h * C) >= 0.0 else -1.0)
+    h = h * (1.0 if np.sum(h * C) >= 0.0 else -1.0)
     k = cross_rows(e, h)
     turning = np.broadcast_to(g, h.shape)
     passing = slope[:, None] * w - cross_rows(e, C)

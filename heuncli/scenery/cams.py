@@ -23,19 +23,30 @@ ROUND = 36  # of a roller
 
 
 def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
-    """The closed outlines (n, 3) of the discs that a body is, and of the rollers that it has."""
+    """The outlines (n, 3) of the discs that a body is, and of the rollers and faces that it has."""
     for given in spec.couplings.values():
         if isinstance(given, Cam) and given.radius and spec.joints[given.follower].b == body:
             axis = np.array(spec.joints[given.shaft].axis)
             arm = given.radius * np.array(perpendicular(axis / np.sqrt(axis @ axis)))
             phi = np.linspace(0.0, 2.0 * np.pi, ROUND + 1)[:, None]
             yield np.array(given.at) + np.cos(phi) * arm[0] + np.sin(phi) * arm[1]
-        if not isinstance(given, Cam) or spec.joints[given.shaft].b != body:
+        if not isinstance(given, Cam) or body not in (spec.joints[given.shaft].b, spec.joints[given.follower].b):
             continue
         joints = [joint(spec.joints[name], 0, 1, False) for name in (given.shaft, given.follower)]
         (row,) = cam_rows(given, 0, joints[0], 1, joints[1])
         own = flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
-        yield outline(own, row.parts[0], joints[0].axis) + joints[0].q
+        if spec.joints[given.shaft].b == body:
+            yield outline(own, row.parts[0], joints[0].axis) + joints[0].q
+        elif given.normal is not None:
+            yield face(own, given, joints[0].axis)
+
+
+def face(own: Flank, given: Cam, axis: Array) -> Array:
+    """The part of a flat face that the flank comes to, (2, 3), the same to both sides of its point."""
+    off = own.places - own.centres
+    along = np.cross(axis, given.normal)
+    reach = float(np.sqrt(np.max(np.sum(off * off, axis=1)) / (along @ along)))
+    return np.array(given.at) + np.outer([-reach, reach], along)
 
 
 def outline(own: Flank, part: CouplingPart, axis: Array) -> Array:

@@ -131,8 +131,8 @@ class Cam(NamedTuple):
     """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
 
     at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
-    normal. phase: the disc's angle at which the lift's own zero stands [rad]. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
-    `both`, the follower is guided on both sides.
+    normal. phase: the disc's angle at which the lift's own zero stands [rad]. restitution: of one that lifts off and
+    strikes again; None: the run ends where it would lift, or, with `both`, the follower is guided on both sides.
     """
 
     shaft: str

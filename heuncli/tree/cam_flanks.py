@@ -32,8 +32,12 @@ def require_flanks(layout: Layout) -> None:
 
 def fault(layout: Layout, cam: Coupling) -> Problem | None:
     """What is wrong with a cam, the first of what there may be; None of one that can be made."""
-    own = flank_of(layout, cam)
     about = f"couplings.{cam.name}"
+    if is_tilted(layout, cam):
+        message = f"the face of cam {cam.name} is not along the axis of its disc: its normal leans that way"
+        hint = "normal: across the disc's axis, in the follower's axes"
+        return Problem("cam-contact", message, hint=hint, about=about)
+    own = flank_of(layout, cam)
     if (own.falls_behind <= 0.0).any():
         where = angles(own, own.falls_behind <= 0.0)
         message = f"the face of cam {cam.name} turns as fast as its disc, or faster, at angles {where} of the disc"
@@ -41,15 +45,26 @@ def fault(layout: Layout, cam: Coupling) -> Problem | None:
         return Problem("cam-undercut", message, hint=hint, about=about)
     if (own.leaves <= 0.0).any() and (own.leaves >= 0.0).any():
         where = angles(own, own.leaves <= 0.0)
-        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at angles {where} of its "
-        message += "disc, elsewhere toward greater ones: between them it stands across and moves nothing"
+        message = f"the flank of cam {cam.name} pushes its follower toward smaller coordinates at angles {where} of "
+        message += "its disc, elsewhere toward greater ones: between them it stands across and moves nothing"
         hint = "guide the follower so that it never passes beside the disc's axis, where it moves along the flank"
         return Problem("cam-sense", message, hint=hint, about=about)
     if cam.rows[0].tension_only and (own.leaves < 0.0).all():
-        message = f"the lift of cam {cam.name} grows toward its disc: a cam that presses moves the follower away from it"
+        message = f"the lift of cam {cam.name} grows toward its disc: a cam that presses moves its follower away"
         hint = "turn the axis of the follower's joint round, and with it the lift; or in a groove: two_sided: true"
         return Problem("cam-sense", message, hint=hint, about=about)
     return cut_away(own, cam, layout.mechanism.joints[cam.rows[0].parts[0].coordinates[0].joint].axis)
+
+
+def is_tilted(layout: Layout, cam: Coupling) -> bool:
+    """Whether a face is not parallel to its disc's axis."""
+    part = cam.rows[0].parts[0]
+    assert part.cam is not None
+    if part.cam.face is None:
+        return False
+    k, n = (x.joint for x in part.coordinates)
+    leans = float(layout.mechanism.joints[k].axis @ (layout.starts[n].R_ref @ part.cam.face))
+    return abs(leans) > tolerances.TYPED_AXES
 
 
 def cut_away(own: Flank, cam: Coupling, axis: Array) -> Problem | None:

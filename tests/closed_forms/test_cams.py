@@ -8,10 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.balancing.study import balance
 from heuncli.errors import SolveError
 from heuncli.results import Array
+from heuncli.spec.load import load
+from heuncli.spec.models import Spec
 from heuncli.tree.cam_flanks import flank_of
-from tests.shared.cams import lift
+from tests.shared.cams import lift, table
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study
 
@@ -97,6 +100,120 @@ def test_flanks_that_are_cut_away() -> None:
         solved(eccentric(lift(rolling, 120), "roller, radius: 0.063"))
 
 
+NOSE = 0.02, 0.1, 20.0, 0.95  # a lobe that is narrower at its root than at its tip: least and most, steepness, width
+
+
+def lobe(x: Array) -> Array:
+    """How far a roller's centre stands above the axis of a disc with one narrow lobe."""
+    low, high, steep, wide = NOSE
+    return np.asarray(0.5 * (low + high) + 0.5 * (high - low) * np.tanh(steep * (np.cos(x) - wide)))
+
+
+def test_a_lobe_narrower_than_its_roller() -> None:
+    """It curves nowhere too much, but what the roller touches on one side it cuts away from the other."""
+    text = eccentric(lift(lobe, 720), "roller, radius: 0.012")
+    with pytest.raises(SolveError, match="touches at another angle"):
+        solved(text)
+    scene = study(text.replace("0.012", "0.008")).setup.scene
+    assert flank_of(scene.layout, scene.mechanism.couplings[0]).radius.min() > 0.004
+
+
+def test_a_path_that_turns_back_about_the_axis() -> None:
+    """A follower beside the axis on a steep lift: n . C < 0 there, and the roller is still outside of its disc."""
+    steep = lambda x: 0.03 + 0.0285 * np.sin(x)  # noqa: E731
+    text = eccentric(lift(steep, 360), "roller, radius: 0.001").replace("samples: 13", "samples: 61")
+    text = text.replace("from: ground.O, to: tappet.P", "from: {body: ground, at: [0.01, 0, 0]}, to: tappet.P")
+    results = solved(text)
+    cam = results.couplings["cam"]["on"]["tappet"]
+    x, y = 0.01, steep(20.0 * results.time)
+    slope = 0.0285 * np.cos(20.0 * results.time)
+    n = np.stack([x - slope, y, 0.0 * y], axis=1)
+    assert (n[:, 0] * x + n[:, 1] * y).min() < 0.0
+    n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
+    near(cam["point"], np.stack([x + 0.0 * y, y, 0.0 * y], axis=1) - 0.001 * n, 0.02, 1e-6)
+
+
+@pytest.mark.parametrize("contact", ["flat, normal: [0, 1, 0]", f"roller, radius: {ROLLER}", "point"])
+def test_a_lift_that_grows_toward_the_disc(contact: str) -> None:
+    """The same cam told against the axis is refused where it presses alone; in a groove it is the same."""
+    sense = eccentric(lift(lambda x: -rolling(x), 72), contact, more="two_sided: false")
+    with pytest.raises(SolveError, match="grows toward its disc") as told:
+        solved(sense.replace("axis: [0, 1, 0]", "axis: [0, -1, 0]"))
+    assert told.value.problems[0].code == "cam-sense"
+    solved(eccentric(lift(rolling, 72), contact, more="two_sided: false"))
+    groove = sense.replace("axis: [0, 1, 0]", "axis: [0, -1, 0]").replace("two_sided: false", "two_sided: true")
+    solved(groove)
+
+
+def test_a_follower_that_passes_the_axis() -> None:
+    """Beside the axis it moves along the flank: no force moves it."""
+    with pytest.raises(SolveError, match="stands across and moves nothing") as told:
+        solved(eccentric(lift(lambda x: 0.003 + 0.02 * np.sin(x), 72), "point"))
+    assert told.value.problems[0].code == "cam-sense"
+
+
+def part_of_a_turn(motor: str, more: str = "", contact: str = "flat, normal: [0, 1, 0]") -> str:
+    """An eccentric disc that has a flank from -40 to 40 deg, turned by a drive."""
+    rise = table(flat, -math.radians(40.0), math.radians(40.0), 80)
+    text = eccentric(rise, contact, more="two_sided: true" + more)
+    return text.replace("angle: 20.0*t", motor)
+
+
+def test_a_disc_that_swings() -> None:
+    """Over a part of a turn it is the eccentric disc."""
+    results = solved(part_of_a_turn("angle: 0.6*sin(20*t)"))
+    phi = results.coordinates["shaft"]
+    y = -E * np.sin(phi["angle"]) * phi["rate"] ** 2 + E * np.cos(phi["angle"]) * phi["acceleration"]
+    near(results.couplings["cam"]["contact"], 0.5 * (9.81 + y), 5.0, 2e-3)
+    near(results.coordinates["guide"]["travel"], flat(phi["angle"]), R, 1e-7)
+
+
+@pytest.mark.parametrize("end", [40.0, -40.0])
+@pytest.mark.parametrize("driven", [True, False])
+def test_a_disc_that_turns_off_its_lift(end: float, driven: bool) -> None:
+    """At that instant, to either side; one that stands off it at the start does not begin."""
+    rate = math.copysign(3.0, end)
+    text = part_of_a_turn(f"angle: {rate}*t")
+    if not driven:
+        free = text[: text.index("drives:")] + text[text.index("couplings:") :]
+        text = free.replace("axis: [0, 0, 1]}", f"axis: [0, 0, 1], initial: {{angle: 0, rate: {10 * rate}}}}}")
+    with pytest.raises(SolveError, match=r"shaft\.angle from -40 to 40 deg") as told:
+        solved(text.replace("duration: 0.3", "duration: 1.0"))
+    (problem,) = told.value.problems
+    assert problem.code == "path-ends"
+    assert f"until: shaft.angle {'>' if end > 0 else '<'} {end:g} deg" in problem.hint
+    if driven:
+        assert f"t = {math.radians(40.0) / 3.0:.6g}"[:10] in problem.message
+        until = f"until: shaft.angle {'>' if end > 0 else '<'} {0.9 * end} deg"
+        results = solved(text.replace("analysis: {", f"analysis: {{{until}, "))
+        assert results.time[-1] == pytest.approx(math.radians(36.0) / 3.0, rel=1e-9)
+        with pytest.raises(SolveError, match=r"stands at shaft\.angle = 57\.29"):
+            solved(text.replace(f"angle: {rate}*t", "angle: 1.0 + 0.1*t"))
+
+
+def test_the_phase_of_a_lift() -> None:
+    """What the table says at an angle happens later by the phase: the run is that of the disc turned back."""
+    plain = solved(part_of_a_turn("angle: 0.6*sin(20*t)"))
+    later = solved(part_of_a_turn("angle: 1.0 + 0.6*sin(20*t)", ", phase: 1.0"))
+    near(later.couplings["cam"]["contact"], plain.couplings["cam"]["contact"], 5.0, 1e-9)
+    near(later.coordinates["guide"]["travel"], plain.coordinates["guide"]["travel"], R, 1e-12)
+    whole = solved(eccentric(lift(flat, 72), "flat, normal: [0, 1, 0]", more="two_sided: true, phase: 90 deg"))
+    near(whole.coordinates["guide"]["travel"], flat(20.0 * whole.time - 0.5 * math.pi), R, 1e-7)
+
+
+def test_a_face_that_turns_with_its_disc() -> None:
+    """A swinging face on a lift of one radian for each: the flank has no place that touches it."""
+    rise = table(lambda x: 1.05 * x, -0.3, 0.3, 6)
+    text = eccentric(rise, "flat, normal: [0, 1, 0]")
+    pin = (
+        "{type: pin, from: {body: ground, at: [-0.3, 0.05, 0]}, to: {body: tappet, at: [-0.3, 0, 0]}, axis: [0, 0, 1]}"
+    )
+    text = text.replace("{type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}", pin)
+    with pytest.raises(SolveError, match="turns as fast as its disc"):
+        solved(text)
+    solved(text.replace(rise, table(lambda x: -0.05 * x, -0.3, 0.3, 6)).replace("20.0*t", "0.2*sin(20*t)"))
+
+
 def test_a_tappet_without_spring_lifts_off() -> None:
     """Where e w^2 sin = g: the run ends there, and says why."""
     rate = 40.0
@@ -150,3 +267,22 @@ def test_a_strike_turns_the_disc_back() -> None:
     total = results.energy["kinetic"] + results.energy["potential"] - results.energy["work"]
     near(total, total[0], float(results.energy["kinetic"].max()), 1e-8)
     assert results.energy["work"][-1] < -0.01
+
+
+def test_the_cycle_of_a_cam_that_presses() -> None:
+    """It is that of a follower guided on both sides, and says so; one that strikes has none; an open lift says why."""
+
+    def read(text: str) -> Spec:
+        return load("scene.yaml", text)
+
+    text = eccentric(lift(flat, 72), "flat, normal: [0, 1, 0]", more="two_sided: false")
+    pressed, guided = (balance(read(t)) for t in (text, text.replace("two_sided: false", "two_sided: true")))
+    assert any("the follower of cam cam is taken to stay" in note for note in pressed.notes)
+    assert not guided.notes
+    assert pressed.orders == guided.orders
+    first = next(row for row in pressed.orders["force"] if row.order == 1.0)
+    assert first.amplitude == pytest.approx(0.5 * E * 400.0, rel=1e-6)
+    with pytest.raises(SolveError, match=r"couplings\.cam may open and close"):
+        balance(read(text.replace("two_sided: false", "restitution: 0.5")))
+    with pytest.raises(SolveError, match=r"it ends at 40°: .* turns off its lift"):
+        balance(read(part_of_a_turn("angle: 20*t")))

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.coupled_start.freedoms import Freedoms
 from heuncli.response import slope, tangent
 from tests.oracle.tellings import TELLINGS
 from tests.shared.cam_scenes import cam_scene
@@ -88,7 +89,7 @@ def test_a_cam_told_otherwise(seed: int, way: str) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_a_groove_is_told_from_either_side(seed: int) -> None:
-    """The follower's axis turned round, and the lift with it: the same motion and force, and the contact's sign turns."""
+    """The follower's axis turned round, and the lift with it: the same motion and force, the contact's sign turns."""
     scene = bare(seed)
     run = solved(moving(scene, TIMES, 1e-12))
     joint, table = scene["joints"]["j_follower"], scene["tables"]["lift"]
@@ -119,3 +120,21 @@ def test_newton_of_a_follower(joint: str, contact: str) -> None:
     J = R @ given @ np.swapaxes(R, 1, 2)
     apply = lambda x: np.einsum("nij,nj->ni", J, x)  # noqa: E731
     near(apply(faster) + np.cross(spin, apply(spin)), moment, float(np.abs(guide["moment"]).max()))
+
+
+def test_a_follower_on_the_axis_of_its_disc() -> None:
+    """No force across the flank moves it there, and no kernel divides by that: gap and rate are told all the same.
+
+    Starts pass such poses on their way; a run cannot come to one, for its flank is refused.
+    """
+    text = carried_cam("slide", "roller").replace("axis: [0.1, 1, 0]", "axis: [0, 1, 0]")
+    text = text.replace("P: [0.01, 0, 0]", "P: [0, 0, 0]").replace("C: [0.01, 0.1, 0]", "C: [0, 0.1, 0]")
+    scene = study(text.replace("center: [0.1, 0.02, 0.03]", "center: [0, 0, 0]")).setup.scene
+    layout = scene.layout
+    place = {layout.mechanism.joints[f.joint].name: (f.q, f.u) for f in layout.freedoms if f.joint >= 0}
+    y = np.zeros(len(layout.y0))
+    y[0], y[place["shaft"][0]], y[place["shaft"][1]], y[place["follow"][0]] = 1.0, 0.3, 9.0, -0.1
+    told = Freedoms(layout, 0.0, ()).measured(y)
+    lift, slope_there, _ = scene.mechanism.couplings[0].rows[0].parts[0].cam.lift.at(0.3)
+    near(told.gaps, [-0.1 - lift[0]], 0.1, 1e-12)
+    near(told.rates, [-9.0 * slope_there[0]], 1.0, 1e-12)

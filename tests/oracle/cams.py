@@ -1,6 +1,6 @@
 """Cams as rows on absolute coordinates: a force between disc and follower alone, across the way of one on the other.
 
-    t = L'(phi) t_b - t_a            how the follower moves against the disc by a unit of its angle, a field of velocities
+    t = L'(phi) t_b - t_a            how the follower passes the disc by a unit of its angle, a field of velocities
     f: across t(C), outward          of a roller's centre C or a point, with P = C - R f
     f = h, t(C + s e x h) . h = 0    of a face with the normal h through C, with P = C + s e x h
     f . (v_b(P) - v_a(P)) = 0,       gamma = d/dt of that while no velocity changes, by differences

@@ -1,4 +1,4 @@
-"""Random scenes with a cam: on a carrier that moves anyhow, or the ground, what hangs on disc and follower, and loads."""
+"""Random scenes with a cam: on a carrier that moves anyhow or the ground, what hangs on them, and loads."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def cam_scene(seed: int) -> dict[str, Any]:
 
 
 def member(maker: Maker, carrier: str, name: str, kind: str, point: Array, axis: Array, travel: float) -> None:
-    """A body on a joint from a point of the carrier, along an axis there, in any attitude, at angle zero or a travel."""
+    """A body on a joint from a point of the carrier, along an axis there, in any attitude, at zero or a travel."""
     maker.scene["bodies"][name] = {**maker.mass(), "points": {}}
     maker.names.append(name)
     A, R = placed(maker.state, carrier), random_rotation(maker.rng)

@@ -112,8 +112,8 @@ def lifts_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Movin
         if math.isnan(angle) or lift.first <= angle + beyond * rate <= lift.last:
             continue
         first, last = math.degrees(lift.first), math.degrees(lift.last)
-        message = f"at t = {t:.9g} s the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle from "
-        message += f"{first:.9g} to {last:.9g} deg"
+        message = f"at t = {t:.9g} s the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle "
+        message += f"from {first:.9g} to {last:.9g} deg"
         end = f"> {last:.6g}" if angle > 0.5 * (lift.first + lift.last) else f"< {first:.6g}"
         hint = f"a longer lift, or one with a period, or end the run before: until: {shaft}.angle {end} deg"
         problems.append(Problem("path-ends", message, None, hint, f"couplings.{coupling.name}"))
