@@ -115,7 +115,7 @@ ROPES = Part(
     rows=(
         Row("FLEET_ANGLE", swung, "warned of", "refused: rope-off-sheave"),
         Row("FLEET_SEEN", swung, "fine", "warned of"),
-        Row("ASKEW", lambda x: runs(TWO.replace("TILT", repr(x))), "fine", "refused: rope-askew"),
+        Row("ASKEW", lambda x: runs(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
 )
