@@ -54,7 +54,7 @@ def collocate(scene: cython.pointer[Scene], method: cython.pointer[Method], run:
     trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
     run.evaluations += 1
     if run.seeing:
-        see_stage(scene, run)
+        see_stage(scene, run, clipped(run, run.stop))
     return trouble
 
 
@@ -235,7 +235,7 @@ def evaluate_stages(
             settle(scene, t, run.stage)
         evaluate(scene, t, run.stage, run.K[k])
         if run.seeing:
-            see_stage(scene, run)
+            see_stage(scene, run, t)
     run.evaluations += method.stages - 1
 
 

@@ -257,7 +257,7 @@ def follow(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cy
         shorten_to(run, 0.0)
         return -1
     if run.seeing:
-        see_stage(scene, run)
+        see_stage(scene, run, t)
         see_between(scene, method, run)
     if not run.following and scene.closure_count and left_branch(scene, run, gap):
         shorten_to(run, 0.5)

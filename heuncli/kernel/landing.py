@@ -63,12 +63,12 @@ def begin_to_see(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cyth
         see_start(scene)
 
 
-def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython.void:
-    """What was evaluated last is seen."""
+def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.double) -> cython.void:
+    """What was evaluated last, at t, is seen: lengths that a law tells are those of that instant."""
     if scene.watch_count:
         see(scene)
     if run.watching:
-        see_contacts(scene, run.t)
+        see_contacts(scene, t)
 
 
 # A step tried

@@ -11,7 +11,7 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.dense import combine, evaluate_stage
+    from heuncli.kernel.dense import clipped, combine, evaluate_stage
     from heuncli.kernel.held import clear_accelerations
     from heuncli.kernel.landing import see_stage
     from heuncli.kernel.scene import Scene
@@ -38,7 +38,7 @@ def take_stages(scene: cython.pointer[Scene], method: cython.pointer[Method], ru
         if trouble < worst:
             worst = trouble
         if run.seeing:
-            see_stage(scene, run)
+            see_stage(scene, run, clipped(run, run.t + method.node[s] * run.h))
         clear_accelerations(scene, method, run.K[s], s == 1)
     return worst
 

@@ -281,7 +281,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     if method.attitude:
         enter_slopes(scene, method, run, run.z, method.stages)
     if run.seeing:
-        see_stage(scene, run)
+        see_stage(scene, run, clipped(run, run.stop))
     clear_accelerations(scene, method, run.K[method.stages], method.stages == 1)
     if run.stiffness.after:
         estimate_swiftness(method, run)

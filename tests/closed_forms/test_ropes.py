@@ -153,6 +153,118 @@ def test_slackens_and_catches() -> None:
     assert caught["joints"]["axle"]["force"] == pytest.approx([0.0, 2 * impulse, 0.0], abs=1e-9)
 
 
+SWUNG = """
+heun: 1
+space: planar
+gravity: [0, -9.81]
+tables: {reel: {x: [0, 0.5, 1], y: [0, 0.1, -0.2]}}
+ground: {points: {A: [0, 0]}}
+bodies:
+  load: {mass: 3, center: [0, 0], inertia: 0.2, position: [0.6, -1.9], velocity: [0.5, 0.1], points: {top: [0, 0.1]}}
+analysis: {duration: 1, samples: 5}
+"""
+DRAWN_IN = '"sqrt(0.6**2 + 1.8**2) - table(reel, t)"'
+
+
+def test_a_driven_length_is_a_rods() -> None:
+    """A rope between two points with a law is the rod that a drive draws in: motion, work, and the blow at its kink."""
+    rope = solved(SWUNG + f"couplings: {{rope: {{type: rope, through: [ground.A, load.top], length: {DRAWN_IN}}}}}")
+    rod = solved(
+        SWUNG + "joints: {rod: {type: rod, from: ground.A, to: load.top}}\n"
+        f"drives: {{winch: {{joint: rod, length: {DRAWN_IN}}}}}"
+    )
+    stated = rope.accuracy["estimate"]["motion"] + rod.accuracy["estimate"]["motion"]
+    assert np.abs(rope.bodies["load"]["position"] - rod.bodies["load"]["position"]).max() <= 4.0 * stated
+    assert rope.couplings["rope"]["tension"] == pytest.approx(rod.joints["rod"]["tension"], rel=1e-7)
+    assert rope.energy["work"] == pytest.approx(rod.energy["work"], abs=1e-7)
+    assert rope.accuracy["energy_drift"] <= 1e-9
+    (own,), (other,) = rope.impulses, rod.impulses
+    assert own["time"] == 0.5
+    assert own["couplings"]["rope"]["tension"] == pytest.approx(other["joints"]["rod"]["tension"], rel=1e-7)
+
+
+@pytest.mark.parametrize("one_sided", ["", ", tension_only: true"])
+def test_a_winch_on_two_falls(one_sided: str) -> None:
+    """Drawn in by a t^2/2 the hook rises by half of it: S = m (g + a/2)/2, work S a t^2/2; followed or integrated."""
+    through = "ground.dead, {sheave: hook.O, radius: 0.2, side: under}, ground.lead, ground.drum"
+    length = '"10 + 0.2*pi + sqrt(2.6**2 + 10**2) - 0.5*t**2"'
+    results = solved(f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{dead: [0, 10], lead: [0.4, 10], drum: [3, 0]}}}}
+bodies:
+  hook: {{mass: 500, center: [0, 0], inertia: 20, position: [0.2, 5], points: {{O: [0, 0]}}}}
+joints:
+  guide: {{type: slide, from: {{body: ground, at: [0.2, 0]}}, to: hook.O, axis: [0, 1]}}
+couplings:
+  hoist: {{type: rope, through: [{through}], length: {length}{one_sided}}}
+analysis: {{duration: 2, samples: 5}}
+""")
+    pull = 500 * (G + 0.5) / 2
+    assert results.couplings["hoist"]["tension"] == pytest.approx(pull, rel=1e-9)
+    assert results.energy["work"] == pytest.approx(pull * 0.5 * np.linspace(0.0, 2.0, 5) ** 2, abs=1e-6)
+    assert results.accuracy["energy_drift"] <= 1e-11
+
+
+def test_a_slack_rope_is_drawn_in_and_catches() -> None:
+    """0.1 m slack, drawn in at 0.5 m/s: after 0.2 s it jerks a load that lies on a stop, with m v, and lifts it."""
+    results = solved(f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{O: [0.3, 5], P: [0.6, 0]}}}}
+bodies:
+  load: {{mass: 40, center: [0, 0], inertia: 1, points: {{top: [0, 0]}}}}
+joints:
+  guide: {{type: slide, from: {{body: ground, at: [0, 0]}}, to: load.top, axis: [0, 1]}}
+stops:
+  floor: {{joint: guide, travel: [0, null]}}
+couplings:
+  hoist:
+    type: rope
+    through: [load.top, {{sheave: ground.O, radius: 0.3, side: over}}, ground.P]
+    length: "10.1 + 0.3*pi - 0.5*t"
+    tension_only: true
+    restitution: 0
+analysis: {{duration: 0.6, samples: 7}}
+""")
+    tension = results.couplings["hoist"]["tension"]
+    assert tension[:2] == pytest.approx(0.0, abs=1e-12)
+    assert tension[3:] == pytest.approx(40 * G, rel=1e-9)
+    (jerk,) = results.impulses
+    assert jerk["time"] == pytest.approx(0.2, rel=1e-9)
+    assert jerk["couplings"]["hoist"]["tension"] == pytest.approx(40 * 0.5, rel=1e-9)
+    assert results.bodies["load"]["position"][-1, 1] == pytest.approx(0.5 * 0.4, abs=1e-9)
+
+
+@pytest.mark.parametrize("length", [2.2, 3.2])
+def test_rests_on_a_rope_or_beside_it(length: float) -> None:
+    """A weight on a spring k comes to rest on the rope, if that is short, else where m g = k d: the rope is slack."""
+    results = solved(f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{A: [0.3, 2.9], B: [0.7, 3], hub: [0.5, 3]}}}}
+bodies:
+  load: {{mass: 5, center: [0, 0], inertia: 0.2, points: {{top: [0, 0]}}}}
+joints:
+  guide: {{type: slide, from: {{body: ground, at: [0.7, 0]}}, to: load.top, axis: [0, 1], initial: {{travel: 1.4}}}}
+forces:
+  spring: {{type: spring, from: ground.B, to: load.top, stiffness: 100, length: 1.5}}
+couplings:
+  rope:
+    type: rope
+    through: [ground.A, {{sheave: ground.hub, radius: 0.2, side: over}}, load.top]
+    length: 0.1 + {length} + 0.2*pi
+    tension_only: true
+analysis: {{type: rest}}
+""")
+    hangs = min(length, 1.5 + 5 * G / 100)
+    assert results.bodies["load"]["position"][0, 1] == pytest.approx(3.0 - hangs, abs=1e-9)
+    assert results.couplings["rope"]["tension"][0] == pytest.approx(5 * G - 100 * (hangs - 1.5), abs=1e-7)
+
+
 @pytest.mark.parametrize("bend", [0.0, 0.5, 1.2])
 def test_constant_velocity(bend: float) -> None:
     """Both shafts turn at one rate at any bend: one angular acceleration by the sum of the inertias about them."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -65,11 +66,20 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
     return Touching(
         which=np.array(found, dtype=int),
         loads=loads,
-        rate=np.where(closed[found], 0.0, np.einsum("kbi,bi->k", loads, motion)),
+        rate=np.where(closed[found], 0.0, np.einsum("kbi,bi->k", loads, motion) + paid_out(layout, own, at)),
         noise=np.maximum(noise, reaches / (last or 1.0)),
         reach=reaches,
         restitution=np.array([contact.restitution for contact in own]),
     )
+
+
+def paid_out(layout: Layout, contacts: Sequence[Contact], at: Recovered) -> Array:
+    """How fast a law in time makes contacts open: of a rope that is paid out its rate, of others 0."""
+    laws = {law.owner: law.value for law in layout.mechanism.laws}
+    driven = layout.tables["closures"]["program"]["count"] > 0
+    t = float(at.times[0])
+    rates = [c.sense * laws[c.joint].derivatives(t)[1] if driven[c.row] else 0.0 for c in contacts]
+    return np.array(rates).reshape(len(contacts))
 
 
 def terms_of_gap(layout: Layout, bodies: Table, contact: Contact) -> float:
