@@ -1,4 +1,4 @@
-"""Machine elements of every kind on carriers that move anyhow: told otherwise they say the same, and every body balances.
+"""Machine elements of every kind on carriers that move anyhow: told otherwise they say the same, every body balances.
 
 Scenes are those of shared/coupled_scenes.py; what is told otherwise is a row of tests/faults/laws.py, of which
 `python -m tests.faults --kind laws` makes more.
@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from heuncli.results import Array, Results
 from heuncli.study.ask.study import Study
 from tests.faults import laws, sources
@@ -21,7 +22,8 @@ from tests.oracle.read import Model, model, placed, state_at
 from tests.oracle.values import to_yaml
 from tests.shared import retell
 from tests.shared.coupled_scenes import ELEMENTS, coupled_scene
-from tests.shared.scenes import near, study
+from tests.shared.gear_trains import pair
+from tests.shared.scenes import near, solved, study
 from tests.shared.trees import weighed
 
 WAYS = ("turned", "in units", "reordered", "from the other side")
@@ -123,3 +125,69 @@ def nothing_and_no_power(found: Results) -> None:
             if not np.isnan(total).any():
                 near(total, 0.0, 10.0 * size, 1e-10)
                 near(power, 0.0, 10.0 * size, 1e-9)
+
+
+RAIL = """\
+heun: 1
+gravity: [0, 0, -10]
+tables:
+  x: {x: [-2, -1, 0, 1, 2], y: [-2, -1, 0, 1, 2], interpolation: cubic}
+  z: {x: [-2, -1, 0, 1, 2], y: [2, 0.5, 0, 0.5, 2], interpolation: cubic}
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  runner: {mass: 2, center: [0, 0, 0.1], inertia: [0.1, 0.1, 0.1], points: {P: [0, 0, 0]}}
+  rail: {mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {P: [0, 0, 0]}}
+joints:
+  hold: {type: HELD, from: ground.O, to: runner.P}
+  wire: {type: curve, from: rail.P, to: RUNNER, x: x, z: z, initial: {travel: 1, speed: 0.5}}
+analysis: {times: [0, 0.1, 0.2], tolerance: 1e-11}
+"""
+
+
+def rail(held: str, runner: str = "runner.P") -> str:
+    """A rail that falls over what runs along it and is held; the runner stands first."""
+    return RAIL.replace("HELD", held).replace("RUNNER", runner)
+
+
+@pytest.mark.parametrize("held", ["ball", "pin, axis: [0, 1, 0]", "weld"])
+def test_a_path_that_its_runner_alone_holds(held: str) -> None:
+    """A curve is never cut, whichever of its bodies is held or stands first."""
+    found = solved(rail(held))
+    every_body_balances(sources.parsed(rail(held)), found)
+    energy = found.energy["kinetic"] + found.energy["potential"]
+    near(energy, energy[0], 10.0, 1e-9)
+    assert found.coordinates["wire"]["travel"][-1] != found.coordinates["wire"]["travel"][0]
+
+
+def test_a_path_over_a_point_of_the_ground_is_refused() -> None:
+    with pytest.raises(SolveError) as error:
+        solved(rail("ball", "ground.O"))
+    (problem,) = error.value.problems
+    assert problem.code == "path-unheld"
+    assert problem.hint
+
+
+def test_a_bushing_at_half_a_turn_is_told_whatever_fails_there() -> None:
+    """Where rows of couplings are held as well, they are not what is lost."""
+    turning = {"type": "bushing", "from": "ground.A", "to": "wheel.c", "turning": 5.0}
+    scene = {**pair(ratio=-2.0), "analysis": {"duration": 2.0, "samples": 3}}
+    scene["forces"] = {**scene["forces"], "mount": turning}
+    with pytest.raises(SolveError) as error:
+        solved(scene)
+    assert [problem.code for problem in error.value.problems] == ["bushing-turned"]
+
+
+def test_a_belt_that_is_struck() -> None:
+    """Its impulse in the strands is that of the blow alone, whatever they pull with before; each has a half."""
+    blows = []
+    for pretension in (10.0, 500.0):
+        scene = pair()
+        scene["couplings"] = {"belt": {"type": "belt", "of": ["p", "w"], "radii": [0.1, 0.2], "pretension": pretension}}
+        scene["impulses"] = {"blow": {"on": "pinion.c", "couple": [0, 0, 3.0]}}
+        (blow,) = solved({**scene, "analysis": {"type": "impulse"}}).impulses
+        own = blow["couplings"]["belt"]
+        near(own["tight"], abs(own["force"]) / 2, 1.0)
+        near(own["slack"], -abs(own["force"]) / 2, 1.0)
+        blows.append(own["force"])
+    near(blows[0], blows[1], 1.0)
+    near(abs(blows[0]), 3.0 * (0.2 / 4) / (0.02 + 0.2 / 4) / 0.1, 1.0)  # the wheel's inertia over the square of 2

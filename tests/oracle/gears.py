@@ -1,4 +1,4 @@
-"""Gears, belts and screws as rows on absolute coordinates: a load fixed in what carries both, which their motions cannot feed.
+"""Gears, belts and screws as rows on absolute coordinates: a load fixed in what carries both, which they cannot feed.
 
     s = v_2(P) − v_1(P),  f·s + m·(σ_2 − σ_1) = 0          P, f, m: fixed in the carrier c
     γ = (σ_c×f)·s + f·(σ_2×(Ṗ − ċ_2) − σ_1×(Ṗ − ċ_1)) + (σ_c×m)·(σ_2 − σ_1)
@@ -91,7 +91,7 @@ def screw(read: Model, name: str, given: Mapping[str, Any], first: Joint, second
 
 
 def strands(read: Model, given: Mapping[str, Any], first: Joint, second: Joint) -> list[tuple[Array, Array, Array]]:
-    """Both strands of a belt, in the axes of what carries it: where it leaves the first pulley, and the second; its way.
+    """Both strands of a belt, axes of what carries it: where it leaves the first pulley and the second; its way.
 
     By the angle between a strand and the line of centres, to either side of it.
     """

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.oracle.loads import Push, gathered, pushes, from_outside
+from tests.oracle.loads import Push, from_outside, gathered, pushes
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.rows import Rows, assemble
 from tests.oracle.turns import Array, cross

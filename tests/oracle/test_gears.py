@@ -1,4 +1,4 @@
-"""Random scenes with gears, racks, cones, threads and belts, some in closed chains, against the independent solution on absolute coordinates."""
+"""Random scenes with what meshes, and belts, some in closed chains, against the oracle on absolute coordinates."""
 
 from __future__ import annotations
 

@@ -16,7 +16,7 @@ from heuncli.errors import HeunError
 from heuncli.results import Array
 from tests.oracle.read import GROUND, Placed, placed, state_at
 from tests.oracle.scenes import Maker
-from tests.oracle.turns import about, across, cross, random_rotation, random_unit
+from tests.oracle.turns import about, across, random_rotation, random_unit
 from tests.shared.geared_scenes import belt, member, mesh, thread
 from tests.shared.rolling_scenes import stand
 from tests.shared.scenes import solved
@@ -158,19 +158,19 @@ def cam(parts: Parts, name: str) -> None:
     contact = [{"contact": "roller", "radius": 0.02}, {"contact": "point"},
                {"contact": "flat", "normal": (Q @ [0.15, 1, 0]).tolist()}][rng.integers(3)]  # fmt: skip
     P, x = rng.uniform(-1, 1, 3), np.linspace(0.0, 2.0 * np.pi, 49)
-    wave = (np.sin(x) - 0.0 * x) * 0.02 + 0.006 * np.cos(2.0 * x)
+    wave = 0.02 * np.sin(x) + 0.006 * np.cos(2.0 * x)
     lift = wave if slides else 0.1 + 4.0 * wave
     lift[-1] = lift[0]
     parts.scene.setdefault("tables", {})[f"{name}_lift"] = {
         "x": x.tolist(), "y": lift.tolist(), "interpolation": "cubic", "period": 2.0 * math.pi,
     }  # fmt: skip
-    x[-1] = 2.0 * math.pi
     own = {"to": {"body": f"{name}d", "at": [0.0, 0.0, 0.0]}, "axis": (Q @ [0, 0, 1]).tolist()}
     start = {"initial": {"angle": float(rng.uniform(0, 6)), "rate": float(rng.uniform(-5, 5))}}
     parts.scene["joints"][f"{name}_shaft"] = {"type": "pin", "from": {"body": base, "at": P.tolist()}, **own, **start}
     parts.scene["joints"][f"{name}_guide"] = {
         "type": "slide" if slides else "pin", "from": {"body": base, "at": (P + Q @ pivot).tolist()},
-        "to": {"body": f"{name}f", "at": [0.0, 0.0, 0.0]}, "axis": (Q @ ([0.1, 1, 0] if slides else [0, 0, 1])).tolist(),
+        "to": {"body": f"{name}f", "at": [0.0, 0.0, 0.0]},
+        "axis": (Q @ ([0.1, 1, 0] if slides else [0, 0, 1])).tolist(),
     }  # fmt: skip
     for body in (f"{name}d", f"{name}f"):
         parts.scene["bodies"][body] = {**parts.maker.mass(), "points": {}}

@@ -18,7 +18,7 @@ FORMS = ("external", "internal", "bevel", "rack", "screw")
 
 
 def geared_scene(seed: int, form: str | None = None, loops: int = 0) -> dict[str, Any]:
-    """A pair of FORMS, as its number says, or a belt, on a body or the ground; loops: closed through what hangs there."""
+    """A pair of FORMS, as its number says, or this one, on a body or the ground; loops: chains that are closed."""
     rng = np.random.default_rng(seed)
     maker = Maker(rng, "given")
     carrier = GROUND
