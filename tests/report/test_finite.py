@@ -46,7 +46,8 @@ COUPLED = """\
 heun: 1
 gravity: [0, -9.81, 0]
 tables:
-  lift: {x: [0, 90 deg, 180 deg, 270 deg, 360 deg], y: [0.1, 0.11, 0.1, 0.09, 0.1], interpolation: cubic, period: 360 deg}
+  lift:
+    {x: [0, 90 deg, 180 deg, 270 deg, 360 deg], y: [0.1, 0.11, 0.1, 0.09, 0.1], interpolation: cubic, period: 360 deg}
 ground: {points: {O: [0, 0, 0], A: [0.5, 0, 0], B: [2, 0, 0], C: [2.3, 0, 0], D: [-1, 0, 0], E: [0, 2, 0]}}
 bodies:
   disc: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}
