@@ -11,6 +11,7 @@ from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import GROUND, Joint, Mechanism
 from heuncli.nearest import did_you_mean
 from heuncli.records import record
@@ -61,6 +62,7 @@ def require_no_contacts(mechanism: Mechanism) -> None:
     """Raise SolveError for what may open and close: no pose tells whether it is closed."""
     names = [stop.path for stop in mechanism.stops]
     names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.tension_only]
+    names += [f"couplings.{own.name}" for own in mechanism.couplings if opens(own)]
     hint = "leave it out; or --period tells orders of time, of a motion that comes back"
     if names:
         raise SolveError(*(
@@ -68,6 +70,22 @@ def require_no_contacts(mechanism: Mechanism) -> None:
                     hint=hint, about=name)
             for name in names
         ))  # fmt: skip
+
+
+def opens(coupling: Coupling) -> bool:
+    """Whether a coupling may open; not a cam that a run ends with: it is followed while it presses (pressed_alone)."""
+    return any(
+        row.restitution is not None or (row.tension_only and coupling.given.type != "cam") for row in coupling.rows
+    )
+
+
+def pressed_alone(mechanism: Mechanism) -> tuple[str, ...]:
+    """Notes on cams that only press: of those the cycle is told as though nothing lifted off."""
+    return tuple(
+        f"the follower of cam {own.name} is taken to stay on its cam: `heun run` tells where the contact would be lost"
+        for own in mechanism.couplings
+        if own.given.type == "cam" and any(row.tension_only for row in own.rows)
+    )
 
 
 def angles_of(mechanism: Mechanism) -> list[Joint]:

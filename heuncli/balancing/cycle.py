@@ -20,6 +20,7 @@ from heuncli.integration.methods.followed import FOLLOWED
 from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.kinetostatics.bodies import BodyStates, body_states
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import fields, record, replace
 from heuncli.results import Array
@@ -31,6 +32,7 @@ LOCAL = 1e-9  # tolerance of a step that is followed: its instants are solved to
 SAMPLES, MOST_SAMPLES = 64, 4096
 QUARTER = 4  # the last so many-th part of the orders tells whether there are enough samples
 DRIVE = "cycle"
+TOLD = ("path-ends", "no-value")  # codes of errors that say why a scene cannot be followed on
 
 
 @record
@@ -69,7 +71,9 @@ class FollowedScene:
         """What is told of a scene that cannot be followed over its cycle."""
         reached = error.reached if isinstance(error, SolveError) else None
         where = "" if reached is None else f", it ends at {math.degrees(self.begin + self.rate * reached):.6g}°"
-        message = f"the scene does not go round its cycle{where}: it locks there, or passes a dead centre"
+        own = error.problems[0]
+        why = own.message if own.code in TOLD else "it locks there, or passes a dead centre"
+        message = f"the scene does not go round its cycle{where}: {why}"
         hint = "--cycle names an angle that turns all the way; heun probe tells what a motion of it comes near to"
         return Problem("no-cycle", message, hint=hint, about=error.problems[0].about)
 
@@ -105,8 +109,16 @@ def driven_mechanism(mechanism: Mechanism, plan: CyclePlan, rate: float, loaded:
         angle = compile_expression(f"{plan.begin!r} + ({rate!r})*t", Scope(in_time=True))
         drive = Drive(DRIVE, plan.joint, "angle", angle, zero_assembled=True)
         joints = tuple(replace(j, drive=drive if j.name == plan.joint else None) for j in joints)
-    moved = replace(mechanism, joints=joints, blows=(), conditions=())
+    couplings = tuple(pressed(own) for own in mechanism.couplings)
+    moved = replace(mechanism, joints=joints, couplings=couplings, blows=(), conditions=())
     return moved if loaded else replace(moved, loads=(), gravity=np.zeros(3), points={})
+
+
+def pressed(coupling: Coupling) -> Coupling:
+    """A cam that keeps its follower, whatever presses the follower on; any other coupling as it is."""
+    if coupling.given.type != "cam":
+        return coupling
+    return replace(coupling, rows=tuple(replace(row, tension_only=False) for row in coupling.rows))
 
 
 def still(scene: PreparedScene) -> Assembly:

@@ -8,7 +8,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.balancing.asked import NOTHING_ASKED, BalanceOptions
-from heuncli.balancing.choice import CyclePlan, planned
+from heuncli.balancing.choice import CyclePlan, planned, pressed_alone
 from heuncli.balancing.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
 from heuncli.balancing.effects import mass_effects
 from heuncli.balancing.harmonics import tail
@@ -46,6 +46,7 @@ def balanced(spec: Spec, asked: BalanceOptions) -> BalanceResults:
     effects = mass_effects(cycle, about)
     turns = CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
     found = replace(told(spec, plan.coordinate, turns, effects, about, asked), settled=settled)
+    found = replace(found, notes=(*found.notes, *pressed_alone(scene.mechanism)))
     found = with_loads(found, spec, scene, plan, asked)
     if asked.weights:
         from heuncli.balancing.weights import counterbalanced  # where they are asked for

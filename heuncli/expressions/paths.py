@@ -45,6 +45,10 @@ class Path:
         """The path seen in other axes: R takes components in its own to those."""
         return replace(self, coefficients=self.coefficients @ R.T)
 
+    def later(self, phase: float) -> Path:
+        """The path with every place at a parameter that is greater by the phase."""
+        return replace(self, knots=self.knots + phase) if phase else self
+
     def at(self, s: Array | float) -> tuple[Array, Array, Array]:
         """Place, slope and bend r, r', r'' at parameters of any shape, (..., 3) each."""
         s = np.asarray(s, dtype=float)

@@ -6,7 +6,9 @@
 So f does on both what the gap does: it stands across L' w_b - w_a, in which the follower's point passes the disc. Of a
 roller or a point that is the normal of the path of its centre in the disc; of a flat face f is along the face's normal,
 and Q where the face has no speed along it against the disc, a distance L' beside the axis where the follower slides.
-All of it lies across the disc's axis, in the plane through the follower's point.
+All of it lies across the disc's axis, in the plane through the follower's point. e x (L' w - e x C), C the follower's
+point from the disc's axis, points out of the disc wherever the path of that point runs, for it goes round the axis once.
+Where the flank has no place or no normal, or the follower is not moved by what stands across it, there is none (NaN).
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.libm import NAN
     from heuncli.kernel.paths import path_point
     from heuncli.kernel.scene import Closure, FreedomTangent, Scene
     from heuncli.kernel.shadow import cython
@@ -43,6 +46,11 @@ def cam_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], slope: cy
     return CamStance(e, g, sub(C, O), w, h, slope)
 
 
+def over(a: cython.double, b: cython.double) -> cython.double:
+    """a / b."""
+    return a / b if b != 0.0 else NAN
+
+
 def contact_of(row: cython.pointer[Closure], cam: CamStance) -> CamContact:
     """The place of contact from the follower's point on, and the load there, before it is divided by f . w_b."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
@@ -53,13 +61,11 @@ def contact_of(row: cython.pointer[Closure], cam: CamStance) -> CamContact:
         if row.swings:
             swept = add_scaled(swept, -cam.slope, cross(cam.g, k))
         top: cython.double = cam.slope * dot(cam.h, cam.w) - dot(cam.h, cross(cam.e, cam.C))
-        return CamContact(scaled(top / dot(cam.h, swept), k), cam.h)
+        return CamContact(scaled(over(top, dot(cam.h, swept)), k), cam.h)
     n = cross(cam.e, sub(scaled(cam.slope, cam.w), cross(cam.e, cam.C)))
     if row.radius == 0.0:
         return CamContact(zero, n)
-    size: cython.double = norm(n)
-    outward: cython.double = row.radius / size if dot(n, cam.C) >= 0.0 else -row.radius / size
-    return CamContact(scaled(-outward, n), n)
+    return CamContact(scaled(-over(row.radius, norm(n)), n), n)
 
 
 def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -71,7 +77,7 @@ def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyth
     u_b: cython.double = scene.freedoms[row.freedom_b].u
     w: Vec3 = add_cross(cam.w, cam.g, there.beside) if row.swings else cam.w
     row.Q = add(place_of(scene, row.b, row.q), there.beside)
-    row.f = scaled(1.0 / dot(there.n, w), there.n)
+    row.f = scaled(over(1.0, dot(there.n, w)), there.n)
     row.m = Vec3(0.0, 0.0, 0.0)
     row.gap = scene.freedoms[row.freedom_b].q - lift.r.x - row.length
     row.rate = u_b - lift.slope.x * u
@@ -114,7 +120,7 @@ def cam_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Row
         dw = add_cross(add_cross(dw, d.g, there.beside), cam.g, turned.beside)
     work: cython.double = dot(there.n, w)
     change: cython.double = dot(turned.n, w) + dot(there.n, dw)
-    f: Vec3 = scaled(1.0 / work, add_scaled(turned.n, -change / work, there.n))
+    f: Vec3 = scaled(over(1.0, work), add_scaled(turned.n, -over(change, work), there.n))
     Q: Vec3 = add(point_along(scene, row.b, row.q).x, turned.beside)
     return RowTangent(Q, f, Vec3(0.0, 0.0, 0.0), rate, -bent)
 
@@ -144,9 +150,8 @@ def contact_along(row: cython.pointer[Closure], cam: CamStance, there: CamContac
     if row.radius == 0.0:
         return CamContact(there.beside, n)
     size: cython.double = norm(there.n)
-    outward: cython.double = row.radius / size if dot(there.n, cam.C) >= 0.0 else -row.radius / size
-    along: cython.double = dot(there.n, n) / (size * size)
-    return CamContact(scaled(-outward, add_scaled(n, -along, there.n)), n)
+    along: cython.double = over(dot(there.n, n), size * size)
+    return CamContact(scaled(-over(row.radius, size), add_scaled(n, -along, there.n)), n)
 
 
 def face_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, d: CamStance) -> CamContact:
@@ -167,6 +172,6 @@ def face_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, 
         dswept = add_scaled(dswept, -cam.slope, add_cross(cross(d.g, k), cam.g, dk))
     bottom: cython.double = dot(cam.h, swept)
     dbottom: cython.double = dot(d.h, swept) + dot(cam.h, dswept)
-    s: cython.double = top / bottom
-    ds: cython.double = (dtop - s * dbottom) / bottom
+    s: cython.double = over(top, bottom)
+    ds: cython.double = over(dtop - s * dbottom, bottom)
     return CamContact(add_scaled(scaled(ds, k), s, dk), d.h)

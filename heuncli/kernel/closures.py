@@ -20,40 +20,19 @@ if not cython.compiled:
         add,
         add_cross,
         add_scaled,
-        cross,
         dot,
         norm,
         rotate_back,
         scaled,
         sub,
     )
-    from heuncli.kernel.cams import cam_part
-    from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.conditions import condition, condition_count, enter, measure_condition
     from heuncli.kernel.jets import jet
-    from heuncli.kernel.meshing import mesh_part
-    from heuncli.kernel.plane_rows import demanded_in_plane, measure_in_plane
+    from heuncli.kernel.plane_rows import demanded_in_plane
     from heuncli.kernel.programs import Jet
-    from heuncli.kernel.rolling import rolling_row
-    from heuncli.kernel.scene import (
-        ARC,
-        CAM,
-        DOT,
-        GUIDE,
-        MESH,
-        ROD,
-        STRAND,
-        SUM,
-        TURN,
-        WOUND,
-        Body,
-        Closure,
-        Counter,
-        Scene,
-    )
+    from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tree import answered, direction_of, push
-    from heuncli.kernel.values import Carried
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
@@ -92,42 +71,14 @@ def measure_row(scene: cython.pointer[Scene], row: cython.pointer[Closure], t: c
         row.prescribed_second = given.second
 
 
-def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind <= TURN and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
-        measure_in_plane(scene, row)
-        return
-    row.Q = place_of(scene, row.b, row.q)
-    if row.kind == CAM:
-        cam_part(scene, row)
-    elif row.kind == GUIDE:
-        guide_row(scene, row)
-    elif row.kind == DOT:
-        dot_row(scene, row)
-    elif row.kind == TURN:
-        turn_row(scene, row)
-    elif row.kind == ROD:
-        rod_row(scene, row)
-    elif row.kind == MESH:
-        mesh_part(scene, row)
-    elif row.kind == STRAND:
-        strand_part(scene, row)
-    elif row.kind == ARC:
-        arc_part(scene, row)
-    elif row.kind == WOUND:
-        wound_part(scene, row)
-    else:
-        rolling_row(scene, row)
-
-
 def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """A row that is a sum of conditions: their gaps, rates and gammas, and the sums of their unit loads."""
     i: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     row.f, row.m = zero, zero
     row.gap, row.rate, row.gamma = -row.length, 0.0, 0.0
-    for i in range(row.part, row.part + row.part_count):
-        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
         measure_condition(scene, part)
         enter(scene, part)
         row.gap += part.factor * part.gap
@@ -138,78 +89,13 @@ def measure_sum(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> c
     row.Q = scene.parts[row.part].Q
 
 
-def enter(scene: cython.pointer[Scene], part: cython.pointer[Closure]) -> cython.void:
-    """Where the load of a part enters its two bodies: at one place, but for what spans the way between two."""
-    if part.kind != STRAND:
-        part.on_b = part.Q
-        part.on_a = place_of(scene, part.a, part.p) if part.kind == ROD else part.Q
-
-
-def guide_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """e . (Q - P) = length, e fixed in a: gamma = e . (cen_b - cen_a - 2 omega_a x (v_b - v_a)), both at Q."""
-    b: Carried = carried(scene, row.b, row.Q)
-    a: Carried = carried(scene, row.a, row.Q)
-    e: Vec3 = direction_of(scene, row.a, row.e)
-    v: Vec3 = sub(b.v, a.v)
-    row.f = e
-    row.m = Vec3(0.0, 0.0, 0.0)
-    row.gap = dot(e, sub(row.Q, place_of(scene, row.a, row.p))) - row.length
-    row.rate = dot(e, v)
-    row.gamma = dot(e, add_scaled(sub(b.centripetal, a.centripetal), -2.0, cross(a.omega, v)))
-
-
-def dot_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """e . g = 0, e fixed in a, g in b: gamma = (omega_a - omega_b) . ((omega_a x e) x g + e x (omega_b x g))."""
-    b: Carried = carried(scene, row.b, row.Q)
-    a: Carried = carried(scene, row.a, row.Q)
-    e: Vec3 = direction_of(scene, row.a, row.e)
-    g: Vec3 = direction_of(scene, row.b, row.g)
-    row.f = Vec3(0.0, 0.0, 0.0)
-    row.m = cross(g, e)
-    row.gap = dot(e, g)
-    row.rate = dot(row.m, sub(b.omega, a.omega))
-    row.gamma = dot(sub(a.omega, b.omega), add(cross(cross(a.omega, e), g), cross(e, cross(b.omega, g))))
-
-
-def turn_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """A pin's angle = length, about e fixed in a: gamma = (omega_a x e) . (omega_b - omega_a)."""
-    b: Carried = carried(scene, row.b, row.Q)
-    a: Carried = carried(scene, row.a, row.Q)
-    turn: Vec3 = sub(b.omega, a.omega)
-    row.f = Vec3(0.0, 0.0, 0.0)
-    row.m = direction_of(scene, row.a, row.e)
-    row.gap = scene.freedoms[row.freedom].q - row.length
-    row.rate = dot(row.m, turn)
-    row.gamma = dot(cross(a.omega, row.m), turn)
-
-
-def rod_row(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
-    """|Q - P| = length along the unit vector n: gamma = n . (cen_b - cen_a) + (v^2 - (n . v)^2) / |Q - P|."""
-    P: Vec3 = place_of(scene, row.a, row.p)
-    b: Carried = carried(scene, row.b, row.Q)
-    a: Carried = carried(scene, row.a, P)
-    D: Vec3 = sub(row.Q, P)
-    v: Vec3 = sub(b.v, a.v)
-    span: cython.double = norm(D)
-    if span > 0.0:
-        D = Vec3(D.x / span, D.y / span, D.z / span)
-    row.f = D
-    row.m = Vec3(0.0, 0.0, 0.0)
-    row.gap = span - row.length
-    row.rate = dot(D, v)
-    row.gamma = dot(D, sub(b.centripetal, a.centripetal))
-    if span > 0.0:
-        row.gamma += (dot(v, v) - row.rate * row.rate) / span
-
-
 def demanded(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """gamma + J Vdot of a row if no freedom accelerated: what the freedoms have to answer."""
     i: cython.Py_ssize_t
-    if row.kind != SUM:
-        return row.gamma + zero_acceleration(scene, row)
     found: cython.double = row.gamma
-    for i in range(row.part, row.part + row.part_count):
-        found += scene.parts[i].factor * zero_acceleration(scene, cython.address(scene.parts[i]))
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        found += part.factor * zero_acceleration(scene, part)
     return found
 
 
@@ -243,11 +129,10 @@ def acceleration_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
 def moved_by(scene: cython.pointer[Scene], row: cython.pointer[Closure], ground: cython.double) -> cython.double:
     """J Vdot of a row at what stands in alpha and a; ground: how many times gravity the ground's is."""
     i: cython.Py_ssize_t
-    if row.kind != SUM:
-        return moved_apart(scene, row, ground)
     found: cython.double = 0.0
-    for i in range(row.part, row.part + row.part_count):
-        found += scene.parts[i].factor * moved_apart(scene, cython.address(scene.parts[i]), ground)
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        found += part.factor * moved_apart(scene, part, ground)
     return found
 
 
@@ -265,11 +150,10 @@ def moved_apart(scene: cython.pointer[Scene], row: cython.pointer[Closure], grou
 def size_of_demand(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """Size of the terms of `demanded`."""
     i: cython.Py_ssize_t
-    if row.kind != SUM:
-        return fabs(row.gamma) + size_if_zero(scene, row)
     found: cython.double = fabs(row.gamma)
-    for i in range(row.part, row.part + row.part_count):
-        found += fabs(scene.parts[i].factor) * size_if_zero(scene, cython.address(scene.parts[i]))
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        found += fabs(part.factor) * size_if_zero(scene, part)
     return found
 
 
@@ -288,11 +172,10 @@ def size_if_zero(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
 def size_of_answer(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """Size of the terms of `residual_of`."""
     i: cython.Py_ssize_t
-    if row.kind != SUM:
-        return fabs(row.gamma) + size_moved(scene, row)
     found: cython.double = fabs(row.gamma)
-    for i in range(row.part, row.part + row.part_count):
-        found += fabs(scene.parts[i].factor) * size_moved(scene, cython.address(scene.parts[i]))
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        found += fabs(part.factor) * size_moved(scene, part)
     return found
 
 
@@ -327,12 +210,8 @@ def put_unit_load(
 def put_unit_loads(scene: cython.pointer[Scene], row: cython.pointer[Closure], sign: cython.double) -> cython.void:
     """The row's load for lambda = sign on all its bodies."""
     i: cython.Py_ssize_t
-    if row.kind != SUM:
-        put_unit_load(scene, row, row.b, sign)
-        put_unit_load(scene, row, row.a, -sign)
-        return
-    for i in range(row.part, row.part + row.part_count):
-        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
         put_unit_load(scene, part, part.b, sign * part.factor)
         put_unit_load(scene, part, part.a, -sign * part.factor)
 
@@ -383,11 +262,9 @@ def push_closures(scene: cython.pointer[Scene]) -> cython.void:
     i: cython.Py_ssize_t
     for r in range(scene.closure_count):
         row: cython.pointer[Closure] = cython.address(scene.closures[r])
-        if row.kind != SUM:
-            push_condition(scene, row, row.multiplier)
-        else:
-            for i in range(row.part, row.part + row.part_count):
-                push_condition(scene, cython.address(scene.parts[i]), row.multiplier * scene.parts[i].factor)
+        for i in range(condition_count(row)):
+            part: cython.pointer[Closure] = condition(scene, row, i)
+            push_condition(scene, part, row.multiplier * part.factor)
 
 
 def push_condition(

@@ -187,7 +187,7 @@ class Closure(Record):
     weight: float  # of the gap [m per unit]
     part: int  # of a SUM: the first of its parts; of what lies on a sheave the strand that comes to it
     part_count: int
-    factor: float  # of a part
+    factor: float  # of a part of a SUM: how many times it is taken; of a row itself 1
     c: int  # of a MESH or WOUND: the body that carries its place and directions; -1: the ground
     ratio: float  # of the freedom's coordinate
     freedom_b: int

@@ -17,8 +17,9 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, cross, dot, inverse_form, sub
     from heuncli.kernel.closures import clear_path, measure_rows, put_unit_loads
+    from heuncli.kernel.conditions import condition, condition_count
     from heuncli.kernel.orthogonal import answer_of_sides, factor_closures, list_coupled, take_roots
-    from heuncli.kernel.scene import CARRIES, SHIFT, SUM, Body, Closure, Freedom, Island, Scene
+    from heuncli.kernel.scene import CARRIES, SHIFT, Body, Closure, Freedom, Island, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import factor_tree, kinematics, load_along
 
@@ -259,14 +260,10 @@ def scale_pose(scene: cython.pointer[Scene], row: cython.pointer[Closure], afres
     i: cython.Py_ssize_t
     bound: cython.double = 0.0
     sides: cython.double = 0.0
-    if row.kind != SUM:
-        bound = row_bound(scene, row, row)
-        sides = answer_of_sides(scene, row, row)
-    else:
-        for i in range(row.part, row.part + row.part_count):
-            part: cython.pointer[Closure] = cython.address(scene.parts[i])
-            bound += part.factor * part.factor * row_bound(scene, row, part)
-            sides += part.factor * part.factor * answer_of_sides(scene, row, part)
+    for i in range(condition_count(row)):
+        part: cython.pointer[Closure] = condition(scene, row, i)
+        bound += part.factor * part.factor * row_bound(scene, row, part)
+        sides += part.factor * part.factor * answer_of_sides(scene, row, part)
     bound *= scene.limits.across
     if sides > bound:
         bound = sides

@@ -89,9 +89,11 @@ def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
 
 def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
     """Its tension; where sheaves hold it that before the first of them, and that behind the last."""
-    found = [CoupledNumber("tension", -loads.multipliers[0], (0,), factor=-1.0)]
+    found = [CoupledNumber("tension", 0.0 - loads.multipliers[0], (0,), factor=-1.0)]
     if len(loads.multipliers) > 1:
-        found.append(CoupledNumber("last_tension", -loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0))
+        found.append(
+            CoupledNumber("last_tension", 0.0 - loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0)
+        )
     return found
 
 

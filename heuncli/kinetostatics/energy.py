@@ -10,9 +10,10 @@ from heuncli import tolerances
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import BushingLoad, JointLoad, Mechanism, PairLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, Mechanism, PairLoad
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
@@ -70,7 +71,12 @@ def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:
 
 
 def power_imbalance(
-    layout: Layout, states: BodyStates, loads: Sequence[AppliedLoad], joints: Sequence[JointLoads], span: float
+    layout: Layout,
+    states: BodyStates,
+    loads: Sequence[AppliedLoad],
+    joints: Sequence[JointLoads],
+    couplings: Sequence[CouplingLoads],
+    span: float,
 ) -> float:
     """The largest |P - d(T + V)/dt| over the instants, kept up for a time [J]: of a motion that is not integrated.
 
@@ -86,6 +92,9 @@ def power_imbalance(
     for joint in joints:
         if joint.drive is not None and joint.joint.drive is not None:
             power = power + joint.drive * drive_rate(states, joint)
+    for coupling in couplings:
+        if coupling.coupling.law is not None:
+            power = power + power_of_rope(states, coupling)
     return float(np.abs(power - gain).max(initial=0.0)) * span
 
 
@@ -116,6 +125,15 @@ def drive_rate(states: BodyStates, load: JointLoads) -> Array:
         at = states.point_position(joint.a, joint.p)
         along = (Q - at) / np.maximum(np.sqrt(np.sum((Q - at) ** 2, axis=1)), tolerances.LEAST_EXTENT)[:, None]
     return np.asarray(np.sum((states.velocity(joint.b, Q) - states.velocity(joint.a, at)) * along, axis=1))
+
+
+def power_of_rope(states: BodyStates, rope: CouplingLoads) -> Array:
+    """What a rope that is drawn in gives to all bodies, as they move, (n_t,) [W]."""
+    power = np.zeros(len(states.v_centre))
+    for body, (place, force, moment) in rope.on_bodies().items():
+        if body != GROUND:
+            power = power + np.sum(force * states.velocity(body, place) + moment * states.omega[:, body], axis=1)
+    return power
 
 
 def energy_drift(change: float, largest: float, lift: float) -> float:

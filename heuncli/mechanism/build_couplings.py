@@ -127,7 +127,7 @@ def cam_rows(given: c.Cam, k: int, shaft: Joint, n: int, follower: Joint) -> tup
     """The follower's coordinate is the lift; one that is pressed alone has the opposite row, which only pulls."""
     swings = JOINTS[follower.kind].coordinates[0] == "angle"
     shape = CamShape(
-        path_of((given.lift, 0.0, 0.0)), swings, follower.p, given.radius,
+        path_of((given.lift, 0.0, 0.0)).later(given.phase), swings, follower.p, given.radius,
         None if given.normal is None else unit(given.normal),
     )  # fmt: skip
     coordinates = Coordinate(k, "angle", 1.0), Coordinate(n, "angle" if swings else "travel", 1.0)

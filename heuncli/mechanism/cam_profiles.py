@@ -1,10 +1,10 @@
 """The flank of a cam: the outline that its disc needs, and how far it curves.
 
     v = L' w - e x (C - O)         how the follower's point C passes the disc, by a unit of the disc's angle
-    1/rho = -n . v' / |v|^2        of the path of a roller's centre, n outward across v; the flank is a radius R within
+    1/rho = -n . v' / |v|^2        of the path of a roller's centre, n = e x v outward; the flank is a radius R within
     rho = p + d2p/dtheta2          of a flat face at the distance p from the axis, which turns by theta against the disc
 A flank that is cut away where it would have to curve more than it can (rho < R, rho < 0) lets no follower follow.
-All directions are the carrier's; v' is seen from the disc.
+All directions are the carrier's; v' is seen from the disc. n is outward, for the path goes round the axis once.
 """
 
 from __future__ import annotations
@@ -20,14 +20,25 @@ from heuncli.shapes.rotations import about, cross_rows
 
 @record
 class Flank:
-    """A cam over a period of its lift: angles (m,) of the disc, places of contact (m, 3) from the disc's axis on, its
-    own axes, and the radius of curvature of the flank there (m,) [m]: not above zero where it is cut away, infinite
-    where a roller's flank is straight or hollow.
+    """A cam over the range of its lift, of a periodic one over a period: angles (m,) of the disc; centres and places
+    (m, 3), the follower's point and the place of contact from the disc's axis on, its own axes; the radius of curvature
+    of the flank (m,) [m]: not above zero where it is cut away, infinite where a roller's flank is straight or hollow.
+
+    leaves: (m,), how fast the follower leaves the disc across the flank by a unit of its coordinate. falls_behind: (m,),
+    how fast a flat face turns against the disc, by a unit of its angle the other way round; of a roller 1.
     """
 
     angles: Array
+    centres: Array
     places: Array
     radius: Array
+    leaves: Array
+    falls_behind: Array
+
+    def around(self, axis: Array, line: Array) -> Array:
+        """A line of places (n, 3) as often as the lift is repeated in a turn of the disc, one behind the other."""
+        turns = round(2.0 * np.pi / float(self.angles[-1] - self.angles[0]))
+        return np.concatenate([line @ about(axis, -k * 2.0 * np.pi / turns).T for k in range(turns)])
 
 
 def flank(part: CouplingPart, shaft: Joint, follower: Joint, R_shaft: Array, R_follower: Array) -> Flank:
@@ -42,44 +53,55 @@ def flank(part: CouplingPart, shaft: Joint, follower: Joint, R_shaft: Array, R_f
     w = cross_rows(np.broadcast_to(g, C.shape), turns @ arm) if cam.swings else np.broadcast_to(g, C.shape)
     axis = np.broadcast_to(e, C.shape)
     if cam.face is None:
-        places, curved = of_roller(cam.radius, cam.swings * g, axis, C, w, slope, bend)
+        touched = of_roller(cam.radius, cam.swings * g, axis, C, w, slope, bend)
     else:
         h = turns @ (R_follower @ cam.face)
-        places, curved = of_face(h, follower.p - shaft.p, cam.swings * g, axis, C, w, slope, bend)
+        touched = of_face(h, follower.p - shaft.p, cam.swings * g, axis, C, w, slope, bend)
     back = np.array([R_shaft.T @ about(e, -x) for x in phi])
-    if cam.face is None:
-        hollow = curved <= 0.0
-        curved = np.where(hollow, np.inf, 1.0 / np.where(hollow, 1.0, curved) - cam.radius)
-    return Flank(phi, np.einsum("mij,mj->mi", back, places), curved)
+    return Flank(phi, turned(back, C), turned(back, touched[0]), *touched[1:])
 
 
-def of_roller(R: float, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array) -> tuple[Array, Array]:
-    """Places of contact, and the curvature of the path of a roller's centre, above zero where it bulges out."""
+def turned(R: Array, x: Array) -> Array:
+    """Vectors (m, 3), each by its own rotation (m, 3, 3)."""
+    return np.einsum("mij,mj->mi", R, x)
+
+
+def of_roller(
+    R: float, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Places of contact, radius of curvature, and how the follower leaves and falls behind, of a roller or a point."""
     v = slope[:, None] * w - cross_rows(e, C)
     change = bend[:, None] * w + (slope**2)[:, None] * cross_rows(np.broadcast_to(g, w.shape), w)
     change = change - slope[:, None] * cross_rows(e, w) - cross_rows(e, v)
     n = cross_rows(e, v)
-    n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
-    n = n * np.where(np.sum(n * C, axis=1) < 0.0, -1.0, 1.0)[:, None]
-    return C - R * n, -np.sum(change * n, axis=1) / np.sum(v * v, axis=1)
+    size = np.sqrt(np.sum(n * n, axis=1))
+    still = size == 0.0
+    n = n / np.where(still, 1.0, size)[:, None]
+    bulge = -np.sum(change * n, axis=1) / np.where(still, 1.0, size**2)
+    hollow = bulge <= 0.0
+    radius = np.where(hollow, np.inf, 1.0 / np.where(hollow, 1.0, bulge) - R)
+    return C - R * n, np.where(still, -R, radius), np.sum(n * w, axis=1), np.ones(len(C))
 
 
 def of_face(
     h: Array, P: Array, g: Array, e: Array, C: Array, w: Array, slope: Array, bend: Array
-) -> tuple[Array, Array]:
-    """Places of contact of a flat face across h, and the radius of curvature of the flank there."""
+) -> tuple[Array, Array, Array, Array]:
+    """The same of a flat face across h. Of its sides that is the disc's from which it is away on the whole."""
+    h = h - np.sum(h * e, axis=1)[:, None] * e
+    h = h / np.sqrt(np.sum(h * h, axis=1))[:, None] * (1.0 if np.sum(h * C) >= 0.0 else -1.0)
     k = cross_rows(e, h)
     turning = np.broadcast_to(g, h.shape)
     passing = slope[:, None] * w - cross_rows(e, C)
-    beside = cross_rows(e, k) - slope[:, None] * cross_rows(turning, k)
-    s = np.sum(h * passing, axis=1) / np.sum(h * beside, axis=1)
+    turn, faster = slope * (e @ g) - 1.0, bend * (e @ g)
+    behind = np.where(turn == 0.0, 1.0, turn)  # where it is 0 there is no place: the face turns with the disc
+    s = np.sum(h * passing, axis=1) / behind
     across = cross_rows(turning, h)
     p = np.sum(h * C, axis=1)
     first = slope * (across @ P)
     second = bend * (across @ P) + slope**2 * (cross_rows(turning, across) @ P)
-    turn, faster = slope * (e @ g) - 1.0, bend * (e @ g)
     if not np.any(g):
         along = np.sum(h * w, axis=1)
         first, second = slope * along, bend * along
-    radius = p + (second / turn - first * faster / turn**2) / turn
-    return C + s[:, None] * k, np.where(p < 0.0, -radius, radius)
+    radius = p + (second / behind - first * faster / behind**2) / behind
+    leaves = np.sum(h * (w + cross_rows(turning, s[:, None] * k)), axis=1)
+    return C + s[:, None] * k, radius, leaves, -turn

@@ -11,6 +11,7 @@ from typing import Literal
 import numpy as np
 
 from heuncli.expressions.paths import Path
+from heuncli.expressions.programs import Expression
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
@@ -119,8 +120,8 @@ class CouplingPart:
 class CoupledRow:
     """One scalar condition: the sum of its parts is the length; None: as it is at the assembled start.
 
-    weight: of its gap [m per unit], 0: the scene's size. tension_only: its multiplier is never above zero; with
-    restitution it opens and closes, without the run ends where it would push.
+    law: what is added to the length in time. weight: of its gap [m per unit], 0: the scene's size. tension_only: its
+    multiplier is never above zero; with restitution it opens and closes, without the run ends where it would push.
     """
 
     parts: tuple[CouplingPart, ...]
@@ -128,6 +129,7 @@ class CoupledRow:
     weight: float = 1.0
     tension_only: bool = False
     restitution: float | None = None
+    law: Expression | None = None
 
     @property
     def is_couple(self) -> bool:
@@ -147,6 +149,11 @@ class Coupling:
     def bodies(self) -> frozenset[int]:
         """All bodies that it looks at, without the ground."""
         return frozenset(i for row in self.rows for part in row.parts for i in part.bodies if i != GROUND)
+
+    @property
+    def law(self) -> Expression | None:
+        """What tells a rope's length in time; None where that stays."""
+        return self.given.law if isinstance(self.given, spec.Rope) else None
 
     @property
     def joints(self) -> frozenset[int]:

@@ -16,6 +16,7 @@ import numpy as np
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.couplings import Coupling
+from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import models
@@ -199,6 +200,24 @@ class BushingLoad:
 Load = PointLoad | PairLoad | JointLoad | BushingLoad
 
 
+class Law(NamedTuple):
+    """What prescribes a coordinate or a length in time.
+
+    owner: as of `Mechanism.owner`; name: of the drive, or of the rope that is drawn in and paid out.
+    """
+
+    owner: int
+    name: str
+    quantity: Literal["angle", "travel", "length"]
+    value: Expression
+    of_rope: bool = False
+
+    @property
+    def path(self) -> str:
+        """Where it stands in the spec."""
+        return f"couplings.{self.name}.length" if self.of_rope else f"drives.{self.name}"
+
+
 @record
 class NamedPoint:
     """A point whose place and velocity expressions name; place: on the body, its axes [m].
@@ -240,6 +259,16 @@ class Mechanism:
         coupling = self.couplings[k - joints]
         return f"{'rolling' if coupling.given.type == 'wheel' else 'couplings'}.{coupling.name}"
 
+    @property
+    def laws(self) -> tuple[Law, ...]:
+        """The laws of all drives, then of the ropes whose lengths are driven."""
+        drives = ((k, joint.drive) for k, joint in enumerate(self.joints) if joint.drive is not None)
+        found = [Law(k, drive.name, drive.quantity, drive.value) for k, drive in drives]
+        for owner, own in enumerate(self.couplings, len(self.joints)):
+            if own.law is not None:
+                found.append(Law(owner, own.name, "length", own.law, of_rope=True))
+        return tuple(found)
+
     def load_rows(self) -> Iterator[tuple[Load, slice]]:
         """The loads, each with its rows in the kernel's table of loads: of a load in a joint one a motion.
 
@@ -261,12 +290,11 @@ class Mechanism:
         return tuple(load for load in self.loads if isinstance(load, JointLoad) and load.presses is not None)
 
     def expressions(self) -> Iterator[Expression]:
-        """The values in time of the loads, then those of the drives, then the conditions."""
+        """The values in time of the loads, then the laws of drives and ropes, then the conditions."""
         for load in self.loads:
             yield from load.values
-        for joint in self.joints:
-            if joint.drive is not None:
-                yield joint.drive.value
+        for law in self.laws:
+            yield law.value
         for condition in self.conditions:
             yield condition.value
 

@@ -9,7 +9,8 @@ import numpy as np
 from heuncli.errors import Finding
 from heuncli.meshes.closure import loose_corners, neighbours, shells_of
 from heuncli.meshes.crossings import require_no_crossing
-from heuncli.meshes.model import Soup, TriangleMesh
+from heuncli.meshes.drawn_in import parted
+from heuncli.meshes.model import Soup, TriangleMesh, moments
 from heuncli.meshes.numbers import refused
 from heuncli.meshes.obj import read_obj
 from heuncli.meshes.ply import read_ply
@@ -40,7 +41,9 @@ def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
     if not len(soup.triangles):
         raise refused("there are no triangles in it", "a solid's surface, in triangles")
     beside = neighbours(soup)
-    require_no_crossing(soup.corners, soup.triangles, resolution(soup.corners))
+    inward = moments(soup.corners, soup.triangles)[0] < 0.0
+    turned = soup.triangles[:, ::-1] if inward else soup.triangles
+    require_no_crossing(*parted(soup.corners, turned, beside), resolution(soup.corners))
     shells = shells_of(soup, beside)
     if shells.turned:
         notes.append("its triangles were turned inward; they are taken as outward")

@@ -146,13 +146,13 @@ def held_hints(spec: Spec) -> list[str]:
 
 def require_resting_drives(setup: Setup) -> None:
     """Raise SolveError where a drive neither rests nor goes on at a constant rate, so that nothing rests beside it."""
-    joints = setup.scene.mechanism.joints
-    drives = [joint.drive for joint in joints if joint.drive is not None and not is_steady(joint.drive.value)]
-    if drives:
-        hint = f"--without {','.join(drive.name for drive in drives)}: modes with it held where it starts"
+    laws = [law for law in setup.scene.mechanism.laws if not is_steady(law.value)]
+    if laws:
+        drives = [law.name for law in laws if not law.of_rope]
+        hint = f"--without {','.join(drives)}: modes with it held where it starts"
+        hint = hint if drives else "a length that stays, or grows at a constant rate"
         raise SolveError(*(
-            Problem("no-modes", f"drives.{drive.name} does not go on at a constant rate", hint=hint)
-            for drive in drives
+            Problem("no-modes", f"{law.path} does not go on at a constant rate", hint=hint) for law in laws
         ))  # fmt: skip
 
 

@@ -47,7 +47,7 @@ def redundancy(scene: PreparedScene, runner: Runner, stages: Stages = ANEW) -> R
     """Count what is held twice: it hangs on no load; stages: that is one, of the scene without loads."""
     if not scene.layout.rows:
         return Redundancy(0, 0, 0, 0, None, 0)
-    drives = tuple(joint.drive.value for joint in scene.mechanism.joints if joint.drive is not None)
+    drives = tuple(law.value for law in scene.mechanism.laws)
     bare, holding = without_loads(scene.layout), runner.start_holding
     return stages.run(counted_without_loads, bare, drives, holding, by=lambda: counted(runner))
 

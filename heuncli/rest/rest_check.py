@@ -27,7 +27,7 @@ def require_still(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> N
     are not looked at there.
     """
     looked_at = np.ones(coordinates.count, dtype=bool)
-    if any(joint.drive is not None for joint in evaluator.layout.mechanism.joints):
+    if evaluator.layout.driven:
         looked_at[:] = False
         looked_at[coordinates.numbers] = True
     terms = rounding(evaluator, coordinates, at) + np.abs(of_springs(evaluator, coordinates, at)).sum(axis=1)

@@ -33,10 +33,10 @@ def require_constant(mechanism: Mechanism) -> None:
         for load in mechanism.loads
         if any(value.time_dependent for value in load.values)
     ]
-    for joint in mechanism.joints:
-        if joint.drive is not None and not is_steady(joint.drive.value):
+    for law in mechanism.laws:
+        if not is_steady(law.value):
             hint = "a constant, or a constant rate: nothing rests beside what speeds up"
-            problems.append(no_rest(f"drives.{joint.drive.name} does not go on at a constant rate", hint))
+            problems.append(no_rest(f"{law.path} does not go on at a constant rate", hint))
     if problems:
         raise SolveError(*problems)
 
@@ -53,10 +53,9 @@ def is_steady(value: Expression) -> bool:
 
 
 def going_on(mechanism: Mechanism) -> dict[str, float]:
-    """How fast the drives that go on do so, by their names [rad/s or m/s]."""
-    drives = [joint.drive for joint in mechanism.joints if joint.drive is not None]
-    rates = {drive.name: drive.value.derivatives(0.0)[1] for drive in drives if drive.value.time_dependent}
-    return {name: rate for name, rate in rates.items() if rate != 0.0}
+    """How fast the drives that go on do so, by where they stand in the spec [rad/s or m/s]."""
+    rates = {law.path: law.value.derivatives(0.0)[1] for law in mechanism.laws if law.value.time_dependent}
+    return {path: rate for path, rate in rates.items() if rate != 0.0}
 
 
 def require_together(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> None:
@@ -69,7 +68,7 @@ def require_together(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -
     largest = max(abs(rate) for rate in rates.values()) / max(1.0, evaluator.size)
     if change.max(initial=0.0) > tolerances.STEADY * largest:
         name, _ = coordinates.owner(int(np.argmax(change)))
-        drives = " and ".join(f"drives.{drive}" for drive in rates)
+        drives = " and ".join(rates)
         hint = "a rest needs drives that stand still, or that turn all that hangs on them as one; run a motion"
         raise SolveError(no_rest(f"{drives} {'keeps' if len(rates) == 1 else 'keep'} {name} moving", hint))
 
@@ -83,7 +82,7 @@ def require_steady(evaluator: Evaluator, coordinates: Coordinates, at: Pose, own
     fastest = max(abs(rate) for rate in rates.values())
     terms = coordinates.terms(resting(evaluator, at.t, at.state[None, :], at.holding, causes=True))
     small = own.noise + tolerances.STEADY * (np.abs(own.inverse) @ (np.abs(own.back) @ terms))
-    drives = " and ".join(f"drives.{drive}" for drive in rates)
+    drives = " and ".join(rates)
     for way in LATER:
         t = at.t + way / fastest
         later = resting(evaluator, t, turned_on(evaluator.layout, at, t)[None, :], at.holding)

@@ -11,9 +11,10 @@ import numpy as np
 
 from heuncli.mechanism.build import joint
 from heuncli.mechanism.build_couplings import cam_rows
-from heuncli.mechanism.cam_profiles import flank
+from heuncli.mechanism.cam_profiles import Flank, flank
+from heuncli.mechanism.couplings import CouplingPart
 from heuncli.results import Array
-from heuncli.shapes.rotations import about, perpendicular
+from heuncli.shapes.rotations import perpendicular
 from heuncli.spec.couplings import Cam
 from heuncli.spec.models import Spec
 
@@ -34,11 +35,17 @@ def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
         joints = [joint(spec.joints[name], 0, 1, False) for name in (given.shaft, given.follower)]
         (row,) = cam_rows(given, 0, joints[0], 1, joints[1])
         own = flank(row.parts[0], joints[0], joints[1], np.eye(3), np.eye(3))
-        turns = round(2.0 * np.pi / float(own.angles[-1] - own.angles[0]))
-        part = own.places[:: max(1, turns * len(own.places) // MOST)]
-        around = [part @ about(joints[0].axis, -k * 2.0 * np.pi / turns).T for k in range(turns)]
-        line = np.concatenate([*around, own.places[:1]]) + joints[0].q
-        yield np.asarray(line)
+        yield outline(own, row.parts[0], joints[0].axis) + joints[0].q
+
+
+def outline(own: Flank, part: CouplingPart, axis: Array) -> Array:
+    """The flank of a disc as a closed line (n, 3) about its axis; of a part of a turn the sector."""
+    assert part.cam is not None
+    line = own.places[:: max(1, round(2.0 * np.pi / np.ptp(own.angles)) * len(own.places) // MOST)]
+    if part.cam.lift.period:
+        return np.concatenate([own.around(axis, line), own.places[:1]])
+    hub = axis * (own.places[0] @ axis)
+    return np.array([hub, *line, own.places[-1], hub])
 
 
 def paths_of(spec: Spec, body: str) -> Iterator[Array]:

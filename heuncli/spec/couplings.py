@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.expressions.programs import TableFunction
+from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec.ends import End, Vec
 
@@ -131,7 +131,7 @@ class Cam(NamedTuple):
     """A disc on the pin `shaft` that moves the follower of another joint: its coordinate is the lift over the angle.
 
     at: the point of the follower, its axes; its roller has that centre and a radius [m], its flat face that point and a
-    normal. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
+    normal. phase: the disc's angle at which the lift's own zero stands [rad]. restitution: of one that lifts off and strikes again; None: the run ends where it would lift, or, with
     `both`, the follower is guided on both sides.
     """
 
@@ -142,6 +142,7 @@ class Cam(NamedTuple):
     contact: Literal["roller", "flat", "point"]
     radius: float = 0.0
     normal: tuple[float, float, float] | None = None
+    phase: float = 0.0
     both: bool = False
     restitution: float | None = None
     type: Literal["cam"] = "cam"
@@ -167,7 +168,7 @@ class Passage(NamedTuple):
 
 
 class Rope(NamedTuple):
-    """A rope without mass through points and over sheaves; length [m], None: as assembled.
+    """A rope without mass through points and over sheaves; length [m], None: as assembled, or by the law in time.
 
     tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
     """
@@ -176,6 +177,7 @@ class Rope(NamedTuple):
     length: float | None = None
     tension_only: bool = False
     restitution: float | None = None
+    law: Expression | None = None
     type: Literal["rope"] = "rope"
 
     @property

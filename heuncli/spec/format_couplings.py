@@ -6,7 +6,19 @@ import math
 from typing import Annotated, Any, Literal
 
 from heuncli.spec.entries import Before, Entry, key
-from heuncli.spec.fields import AnEnd, Angle, Anything, AsText, Direction, Force, Length, Lift, Number, Switch
+from heuncli.spec.fields import (
+    AnEnd,
+    Angle,
+    Anything,
+    AsText,
+    Direction,
+    Force,
+    Length,
+    LengthInTime,
+    Lift,
+    Number,
+    Switch,
+)
 
 
 class RatioEntry(Entry):
@@ -67,6 +79,7 @@ class CamEntry(Entry):
     contact: Literal["roller", "flat", "point"]
     radius: Length | None = None
     normal: Direction | None = None
+    phase: Angle = 0.0
     two_sided: Switch = False
     restitution: Number | None = None
 
@@ -92,7 +105,7 @@ class RopeEntry(Entry):
 
     type: Literal["rope"]
     through: list[Annotated[PassageEntry, Before(passage), AsText()]]
-    length: Length | None = None
+    length: LengthInTime | None = None
     tension_only: Switch = False
     restitution: Number | None = None
 

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from heuncli.spec.tables import Wrong
 
 HOW_IMPORTED = "heun import makes a spec of a robot in URDF, or a model of MuJoCo's"
-PLACED = ("analysis", "drives", "expect", "forces")  # blocks of which later stages can locate every value
+PLACED = ("analysis", "couplings", "drives", "expect", "forces")  # blocks of which later stages can locate every value
 
 
 Given = Mapping[str, str] | Sequence[Setting]

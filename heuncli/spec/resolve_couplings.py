@@ -108,14 +108,19 @@ def cam(by: Following, name: str, entry: f.CamEntry) -> c.Cam:
     shaft, follower = entry.of
     return c.Cam(
         shaft, follower, entry.lift, by.end(entry.at).point, entry.contact, entry.radius or 0.0, entry.normal,
-        entry.two_sided, entry.restitution,
+        entry.phase, entry.two_sided, entry.restitution,
     )  # fmt: skip
 
 
 def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
     """A rope."""
     through = tuple(passage(by, given) for given in entry.through)
-    return c.Rope(through, entry.length, entry.tension_only, entry.restitution)
+    length, law = None, entry.length
+    if law is not None and law.constant is not None:
+        length, law = law.constant, None
+    elif law is not None:
+        law = by.placed(law, f"couplings.{name}.length")
+    return c.Rope(through, length, entry.tension_only, entry.restitution, law)
 
 
 def passage(by: Following, given: f.PassageEntry) -> c.Passage:

@@ -9,7 +9,7 @@ from heuncli.kernel.choose import scene as kernel
 from heuncli.mechanism.couplings import GROUND, CoupledRow, CouplingPart
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
-from heuncli.tree.rows import ZERO, ClosureRow, Vector
+from heuncli.tree.rows import ZERO, ClosureRow, Program, Vector
 from heuncli.tree.starts import pose
 
 KINDS = {
@@ -79,8 +79,8 @@ def _gap(part: CouplingPart, start: Assembly, coordinates: Mapping[tuple[int, st
     return float(e @ (Rb @ part.g if part.kind == "dot" else D))
 
 
-def sum_row(row: CoupledRow, length: float, first: int, size: float) -> ClosureRow:
-    """The row that is the sum of its parts, from the first of them on; its ends are those of that one."""
+def sum_row(row: CoupledRow, length: float, first: int, size: float, program: Program) -> ClosureRow:
+    """The row that is the sum of its parts, from the first of them on; program: what its length has besides in time."""
     return ClosureRow(
         kind=kernel.SUM,
         a=-1,
@@ -89,6 +89,7 @@ def sum_row(row: CoupledRow, length: float, first: int, size: float) -> ClosureR
         q=ZERO,
         weight=row.weight or size,
         length=length,
+        program=program,
         part=first,
         part_count=len(row.parts),
     )

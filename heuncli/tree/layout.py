@@ -140,8 +140,8 @@ class Layout:
 
     @property
     def driven(self) -> bool:
-        """Whether a coordinate is prescribed."""
-        return any(j.drive is not None for j in self.mechanism.joints)
+        """Whether a coordinate or a rope's length is prescribed."""
+        return bool(self.mechanism.laws)
 
     def path(self, body: int) -> list[int]:
         """Places in the tree from a body to the root; empty for the ground."""

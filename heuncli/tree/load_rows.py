@@ -35,7 +35,8 @@ Components = tuple[Program, Program, Program]
 class ValuePrograms(NamedTuple):
     """The values in time of a mechanism: their pack, and where the program of each stands, by its identity.
 
-    drives: that of each joint's drive. Theirs come first in the pack: where they stand hangs on no load.
+    drives: that of each joint's drive, then of each coupling's law. Theirs come first in the pack: where they stand
+    hangs on no load.
     """
 
     pack: Pack
@@ -57,15 +58,16 @@ class ValuePrograms(NamedTuple):
 def programs_of(mechanism: Mechanism) -> ValuePrograms:
     """Every expression in time."""
     pack = Pack()
-    at = {id(e): pack.add(e) for e in (j.drive.value for j in mechanism.joints if j.drive is not None)}
+    at = {id(law.value): pack.add(law.value) for law in mechanism.laws}
     drives = drives_of(mechanism, at)
     at |= {id(e): pack.add(e) for e in applied(mechanism) if e.constant is None}
     return ValuePrograms(pack, at, drives)
 
 
 def drives_of(mechanism: Mechanism, at: dict[int, Program]) -> tuple[Program, ...]:
-    """The program of each joint's drive."""
-    return tuple(at[id(j.drive.value)] if j.drive is not None else NO_PROGRAM for j in mechanism.joints)
+    """The program of the law of each joint and coupling."""
+    laws = {law.owner: at[id(law.value)] for law in mechanism.laws}
+    return tuple(laws.get(k, NO_PROGRAM) for k in range(len(mechanism.joints) + len(mechanism.couplings)))
 
 
 def applied(mechanism: Mechanism) -> list[Expression]:
@@ -224,7 +226,7 @@ def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
 
     Of conditions only where they change.
     """
-    driven = {id(j.drive.value): j.drive.value for j in mechanism.joints if j.drive is not None}
+    driven = {id(law.value): law.value for law in mechanism.laws}
     loads = {id(e): e for load in mechanism.loads for e in load.values}
     watched = [
         WatchRow(programs.at[key], curved=int(key in driven), condition=0)

@@ -93,7 +93,8 @@ def framed(
     drives: tuple[Program, ...],
     tree: GivenTree | None,
 ) -> LayoutFrame:
-    """A layout without its loads; named: joints and points that expressions name; drives: a program a joint."""
+    """A layout without its loads; named: joints and points that expressions name; drives: a program a joint, then a
+    coupling."""
     spanning = span(mechanism, to_be_kept(mechanism, named)) if tree is None else tree.spanning
     if tree is not None and tree.starts is not None:
         starts = list(tree.starts)
@@ -353,7 +354,8 @@ class _Builder:
                     self._opening(owner, coupling.name, row.restitution)
                 self.row_joint.append(owner)
                 length = as_assembled(row, self.start, self.coordinates) if row.length is None else row.length
-                self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size))
+                program = NO_PROGRAM if row.law is None else self.drives[owner]
+                self.closure_rows.append(sum_row(row, length, len(self.part_rows), self.size, program))
                 first = len(self.part_rows)
                 for part in row.parts:
                     made = part_row(part, first, self.in_tree, self.relative, freedoms)
@@ -414,7 +416,8 @@ class _Builder:
         a, b = self.in_tree(own.a), self.in_tree(own.b)
         p, q = self.relative(own.a, own.p), self.relative(own.b, own.q)
         self.row_joint.append(joint)
-        self.closure_rows.append(ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length))
+        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, factor=1.0)
+        self.closure_rows.append(row)
         self.paths.append(sorted(set(self._path(a)) | set(self._path(b)), reverse=True))
 
     def _path(self, i: int) -> list[int]:
@@ -426,7 +429,7 @@ class _Builder:
 
     def finish(self, work: bool) -> LayoutFrame:
         """Counted angles and the work join the state; the tables are made."""
-        driven = any(j.drive is not None for j in self.mechanism.joints)
+        driven = bool(self.mechanism.laws)
         energy_group = -1
         for k in self.counters:
             self.counters[k] = len(self.y)

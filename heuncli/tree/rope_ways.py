@@ -81,9 +81,10 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
         parts = parts_between(start, stays, way, first, last)
         length = length_between(stays, way, first, last) + wound_at_start(mechanism, start, parts)
         if rope.length is not None:
-            require_length(rope, coupling.name, length)
-            length = rope.length
-        rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution))
+            length = rope.length  # the start is moved to it (coupled_start), or the rope is slack
+        elif rope.law is not None:
+            length = 0.0  # the law tells all of it, and moves the start
+        rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution, rope.law))
     return replace(coupling, rows=tuple(rows))
 
 
@@ -320,14 +321,3 @@ def wound_at_start(mechanism: Mechanism, start: Assembly, parts: Sequence[Coupli
     """What the turns of sheaves at the start make of a condition's length."""
     counted = [turn for part in parts for turn in part.coordinates]
     return sum(x.ratio * joint_start(mechanism, start, mechanism.joints[x.joint]).angle for x in counted)
-
-
-def require_length(rope: spec.Rope, name: str, way: float) -> None:
-    """Raise SolveError for a rope that is shorter than its way, or longer and cannot go slack."""
-    beyond = way - rope.length if rope.length is not None else 0.0
-    if beyond > tolerances.OPEN_GAP * way or (rope.restitution is None and beyond < -tolerances.OPEN_GAP * way):
-        message = f"is {rope.length:.10g} m long, and its way as assembled {way:.10g} m"
-        hint = "leave length out: as assembled; or give the bodies' places so that it fits"
-        if beyond < 0.0:
-            hint = "tension_only and restitution: it is slack at first; or leave length out: as assembled"
-        raise refused(name, None, "does-not-fit", message, hint)

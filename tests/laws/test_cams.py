@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 from heuncli.response import slope, tangent
+from tests.oracle.tellings import TELLINGS
+from tests.shared.cam_scenes import cam_scene
 from tests.shared.cams import carried_cam
-from tests.shared.scenes import near, study
+from tests.shared.retellings import same_results
+from tests.shared.scenes import moving, near, solved, study
+from tests.shared.trees import TIMES
 
 KINDS = [(joint, contact) for joint in ("slide", "pin") for contact in ("roller", "flat", "point")]
 
@@ -59,3 +65,57 @@ def test_the_tangent_is_that_of_the_motion(joint: str, contact: str) -> None:
     beside = [slope(space, 0.0, y + k * h * along)[0] for k in (-2, -1, 1, 2)]
     wanted = (beside[0] - 8.0 * beside[1] + 8.0 * beside[2] - beside[3]) / (12.0 * h)
     near(tangent(space, 0.0, y) @ along, wanted, float(np.abs(wanted).max()), 1e-7)
+
+
+def bare(seed: int) -> dict[str, Any]:
+    """A random scene with a cam, its loads left out."""
+    return {key: value for key, value in cam_scene(seed).items() if key != "forces"}
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("way", ["turned", "mirrored", "inches, pounds", "faster", "renamed", "other origins"])
+@pytest.mark.parametrize("seed", range(6))
+def test_a_cam_told_otherwise(seed: int, way: str) -> None:
+    """A random scene with each kind of cam: all numbers are those of the other telling, contact and angle, too."""
+    scene = bare(seed)
+    told = TELLINGS[way](scene, np.random.default_rng(seed))
+    one, two = (solved(moving(s, np.array(TIMES) * t, 1e-12)) for s, t in ((scene, 1.0), (told.scene, told.time)))
+    same_results(told, one, two, 1e-9)
+    size = max(1.0, float(np.abs(one.couplings["cam"]["contact"]).max()))
+    near(two.couplings["cam"]["contact"] / told.force, one.couplings["cam"]["contact"], size)
+    near(two.couplings["cam"]["pressure_angle"], one.couplings["cam"]["pressure_angle"], 1.0, 1e-8)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_groove_is_told_from_either_side(seed: int) -> None:
+    """The follower's axis turned round, and the lift with it: the same motion and force, and the contact's sign turns."""
+    scene = bare(seed)
+    run = solved(moving(scene, TIMES, 1e-12))
+    joint, table = scene["joints"]["j_follower"], scene["tables"]["lift"]
+    other = {key: [-x for x in joint[key]] for key in ("axis", "to_axis") if key in joint}
+    scene["joints"]["j_follower"] = joint | other
+    scene["tables"]["lift"] = table | {"y": [-y for y in table["y"]]}
+    turned = solved(moving(scene, TIMES, 1e-12))
+    one, two = run.couplings["cam"], turned.couplings["cam"]
+    size = max(1.0, float(np.abs(one["contact"]).max()))
+    near(two["contact"], -one["contact"], size)
+    near(two["on"]["follower"]["force"], one["on"]["follower"]["force"], size)
+    near(two["on"]["follower"]["point"], one["on"]["follower"]["point"], 1.0)
+
+
+@pytest.mark.parametrize(("joint", "contact"), KINDS)
+def test_newton_of_a_follower(joint: str, contact: str) -> None:
+    """Its joint and the cam make all of its acceleration, and of its turning about its centre of mass."""
+    own = study(carried_cam(joint, contact))
+    found, body = own.results, own.setup.scene.mechanism.bodies
+    f = next(b for b in body if b.name == "f")
+    cam, guide, moved = found.couplings["cam"]["on"]["f"], found.joints["follow"], found.bodies["f"]
+    force = cam["force"] + guide["force"] + f.mass * np.array([1.0, -9.81, 2.0])
+    near(force, f.mass * moved["center_acceleration"], float(np.abs(cam["force"]).max()))
+    arms = [(x["point"] - moved["center"], x["force"]) for x in (cam, guide)]
+    moment = guide["moment"] + cam["moment"] + sum(np.cross(arm, push) for arm, push in arms)
+    given = np.array([[0.004, 0, 0.001], [0, 0.003, 0], [0.001, 0, 0.005]])
+    R, spin, faster = moved["rotation"], moved["angular_velocity"], moved["angular_acceleration"]
+    J = R @ given @ np.swapaxes(R, 1, 2)
+    apply = lambda x: np.einsum("nij,nj->ni", J, x)  # noqa: E731
+    near(apply(faster) + np.cross(spin, apply(spin)), moment, float(np.abs(guide["moment"]).max()))

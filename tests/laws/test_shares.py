@@ -450,6 +450,7 @@ def test_a_strike_leaves_no_share_to_drives_that_are_not() -> None:
     near(sum(share["force"] for share in shares.values()), found.foundation["force"], 100.0)
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("name", ["belt_drive", "screw_press"])
 def test_shares_of_couplings_add_up(name: str) -> None:
     found = solved((SPECS / f"{name}.yaml").read_text(encoding="utf-8"), wanted=WANTED | {"couplings"})

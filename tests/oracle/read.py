@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from tests.oracle.masses import Mass, mass_of
-from tests.oracle.turns import Array, attitude, cross, unit
+from tests.oracle.turns import Array, about, attitude, cross, unit
 
 Scene = Mapping[str, Any]
 InTime = float | Callable[[float], float]
@@ -164,6 +164,20 @@ def state_at(bodies: Mapping[str, Mapping[str, Any]], instant: int) -> dict[str,
     """The state in a result's `bodies` (manual/results.md, "Paths": arrays with the instants first)."""
     keys = ("position", "rotation", "velocity", "angular_velocity")
     return {name: Placed(*(np.array(body[k][instant], dtype=float) for k in keys)) for name, body in bodies.items()}
+
+
+def moved_on(read: Model, state: State, dt: float) -> dict[str, Placed]:
+    """All bodies carried on by a moment, velocities of the centres of mass and angular ones as they are."""
+    found = {}
+    for name, own in state.items():
+        spin = own.angular_velocity
+        size = float(np.linalg.norm(spin))
+        R = about(spin / size, size * dt) @ own.rotation if size else own.rotation
+        c = read.masses[name].center
+        v = own.speed(c)
+        centre = own.point(c) + dt * v
+        found[name] = own._replace(rotation=R, position=centre - R @ c, velocity=v - cross(spin, R @ c))
+    return found
 
 
 def directed(value: Sequence[float] | Mapping[str, Any] | None, R: Array) -> Array:

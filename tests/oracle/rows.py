@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.oracle import gears
+from tests.oracle import cams, gears
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.turns import Array, across, cross, turn_vector
 from tests.oracle.wheels import lines
@@ -100,7 +100,7 @@ class Rows(NamedTuple):
 
 
 def assemble(scene: Model, state: State, t: float) -> Rows:
-    """The rows of all joints of a scene, and of its wheels."""
+    """The rows of all joints of a scene, and of its wheels, gears and cams."""
     place = {name: 6 * k for k, name in enumerate(scene.names)}
     rows: list[Row] = []
     J: list[Array] = []
@@ -128,7 +128,7 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
             rows.append(row)
             J.append(line)
             gamma.append(float(row.force @ bias + row.force_rate @ slip + row.moment_rate @ turning))
-    for name, e, line, bias_of in (*lines(scene, state), *gears.lines(scene, state)):
+    for name, e, line, bias_of in (*lines(scene, state), *gears.lines(scene, state), *cams.lines(scene, state)):
         rows.append(Row(name, False, e, zero, zero, zero, 0.0, 0.0))
         J.append(line)
         gamma.append(bias_of)

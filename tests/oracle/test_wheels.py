@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from tests.oracle.loads import pushes
-from tests.oracle.read import Model, Placed, State, model, placed
+from tests.oracle.read import model, moved_on, placed
 from tests.oracle.rows import assemble, velocities
 from tests.oracle.solve import accelerations, scene_length
-from tests.oracle.turns import about, cross
 from tests.oracle.wheels import contact, height, loads, wheels
 from tests.shared import checks
 from tests.shared.rolling_scenes import rolling, rolling_scene
@@ -64,17 +63,3 @@ def test_the_oracle_rows_change_as_their_gammas_say(seed: int) -> None:
     slope = (assemble(read, moved[0], 0.0).J - assemble(read, moved[1], 0.0).J) @ V / (2 * h)
     own = np.array([row.joint == "rim" for row in assemble(read, state, 0.0).rows])
     near(slope[own], assemble(read, state, 0.0).gamma[own], 10.0, 1e-7)
-
-
-def moved_on(read: Model, state: State, dt: float) -> dict[str, Placed]:
-    """All bodies carried on by a moment, velocities of the centres of mass and angular ones as they are."""
-    found = {}
-    for name, own in state.items():
-        spin = own.angular_velocity
-        size = float(np.linalg.norm(spin))
-        R = about(spin / size, size * dt) @ own.rotation if size else own.rotation
-        c = read.masses[name].center
-        v = own.speed(c)
-        centre = own.point(c) + dt * v
-        found[name] = own._replace(rotation=R, position=centre - R @ c, velocity=v - cross(spin, R @ c))
-    return found

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tests.oracle import told_cams as cams
 from tests.oracle.masses import Mass, mass_of
 from tests.oracle.read import GROUND, InTime, directed
 from tests.oracle.turns import Array, attitude
@@ -65,7 +66,13 @@ def turned(scene: Scene, Q: Array) -> Scene:
         "bodies": {k: body(b) for k, b in scene["bodies"].items()},
         "joints": {k: joint(j) for k, j in ends["joints"].items()},
         **({"forces": {k: force(f) for k, f in ends["forces"].items()}} if "forces" in scene else {}),
+        **told_couplings(ends, lambda cam: cams.turned(cam, Q)),
     }
+
+
+def told_couplings(scene: Scene, way: Callable[[Spec], Spec]) -> Scene:
+    """The couplings of a scene, each told another way; nothing of one that has none."""
+    return {"couplings": {k: way(c) for k, c in scene["couplings"].items()}} if "couplings" in scene else {}
 
 
 def combined(Q: Array, v: Sequence[InTime]) -> list[Any]:
@@ -181,6 +188,7 @@ def units_changed(scene: Scene, length: float = 1.0, mass: float = 1.0, time: fl
     for name, spec in new["joints"].items():
         if "length" in spec:
             new["joints"][name] = {**spec, "length": length * spec["length"]}
+    new |= told_couplings(new, lambda cam: cams.in_units(cam, length)) | cams.tables_in_units(scene, length)
     if "forces" in scene:
         new["forces"] = {k: load(f) for k, f in new["forces"].items()}
     if "drives" in scene:
@@ -229,6 +237,7 @@ def renamed(scene: Scene, rng: np.random.Generator) -> tuple[Scene, dict[str, st
         "bodies": {body_names[b]: scene["bodies"][b] for b in rng.permutation(bodies)},
         "joints": {joint_names[j]: spec(scene["joints"][j]) for j in rng.permutation(joints)},
     }
+    new |= told_couplings(scene, lambda cam: cams.renamed(cam, body_names, joint_names))
     for part in ("forces", "drives"):
         if part in scene:
             new[part] = {k: spec(v) for k, v in scene[part].items()}
@@ -266,7 +275,7 @@ def swapped(scene: Scene, joint: str) -> Scene:
 
 
 def ends_mapped(scene: Scene, change: Callable[[str, Array], list[float]]) -> Scene:
-    """All {body, at} ends of joints and loads with their place changed; named points are the bodies' own affair.
+    """All {body, at} ends of joints, loads and cams with their place changed; named points are the bodies' own affair.
 
     And those of distributed loads, which are given in the axes of the body that they are on.
     """
@@ -278,12 +287,13 @@ def ends_mapped(scene: Scene, change: Callable[[str, Array], list[float]]) -> Sc
             return {**value, "at": change(value["body"], np.array(value["at"], dtype=float))}
         return value
 
-    parts = [part for part in ("joints", "forces") if part in scene]
+    parts = [part for part in ("joints", "forces", "couplings") if part in scene]
+    keys = ("from", "to", "on", "at")
     return {
         **scene,
         **{
             part: {
-                name: {k: end(v, spec.get("on")) if k in ("from", "to", "on") else v for k, v in spec.items()}
+                name: {k: end(v, spec.get("on")) if k in keys else v for k, v in spec.items()}
                 for name, spec in scene[part].items()
             }
             for part in parts

@@ -28,8 +28,8 @@ class Text(NamedTuple):
         return f"{self.path.relative_to(ROOT)}:{self.line}"
 
 
-@cache
 def tree(path: Path) -> ast.Module:
+    """Not kept: a thousand trees would be searched for garbage again and again."""
     return ast.parse(path.read_text(encoding="utf-8"))
 
 

@@ -167,4 +167,4 @@ def drives_of(layout: Layout, island: Island) -> list[str]:
     """The drives in the loops of an island, by name."""
     cut = {layout.rows[row] for row in island.rows.tolist()}
     own = cut | {layout.spanning.hangs[body].joint for k in cut for body in loop_of(layout, k)}
-    return [drive.name for k, joint in enumerate(layout.mechanism.joints) if k in own and (drive := joint.drive)]
+    return [law.name for law in layout.mechanism.laws if law.owner in own]

@@ -42,8 +42,8 @@ class GivenBlow:
 
     def names(self, mechanism: Mechanism) -> tuple[str, ...]:
         """The names of what acts."""
-        drives = (mechanism.joints[k].drive for k in self.drives)
-        return (*(mechanism.blows[i].name for i in self.blows), *(d.name for d in drives if d is not None))
+        laws = {law.owner: law.name for law in mechanism.laws}
+        return (*(mechanism.blows[i].name for i in self.blows), *(laws[k] for k in self.drives))
 
 
 @record
@@ -85,10 +85,10 @@ def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
     """The blows that are given at instants within [0, last], ascending; those of one instant together."""
     at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
     befores: dict[float, float] = {}
-    for k, joint in enumerate(mechanism.joints):
-        for before, after, first, then in rate_jumps(joint.drive.value, last) if joint.drive is not None else ():
+    for law in mechanism.laws:
+        for before, after, first, then in rate_jumps(law.value, last):
             befores[after] = before
-            at.setdefault(after, ([], {}))[1][k] = (first, then)
+            at.setdefault(after, ([], {}))[1][law.owner] = (first, then)
     for i, blow in enumerate(mechanism.blows):
         if blow.when is not None:
             continue  # struck where that becomes true (run/triggers.py)
@@ -239,12 +239,11 @@ def work_of_drives(layout: Layout, given: GivenBlow, jump: Columns) -> float:
     A drive whose rate stays works, too: its impulse times that rate.
     """
     work = 0.0
-    for k, joint in enumerate(layout.mechanism.joints):
-        if joint.drive is None:
-            continue
-        steady = joint.drive.value.derivatives(given.after)[1]
+    for law in layout.mechanism.laws:
+        k = law.owner
+        steady = law.value.derivatives(given.after)[1]
         rate = 0.5 * sum(given.drives.get(k, (steady, steady)))
-        if joint.drive.quantity == "length":
+        if law.quantity == "length":
             work += rate * float(jump.multipliers[layout.rows.index(k)])
         else:
             own = [n for n, freedom in enumerate(layout.freedoms) if freedom.joint == k and freedom.q < 0]

@@ -64,7 +64,8 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     length: of the run; coordinates: at t, by joint and quantity.
     """
     scale = max(abs(t), length)
-    if problems := paths_left(mechanism, t, scale * 2.0**-FARTHEST, coordinates):
+    beyond = scale * 2.0**-FARTHEST
+    if problems := paths_left(mechanism, t, beyond, coordinates) + lifts_left(mechanism, t, beyond, coordinates):
         return problems
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
@@ -99,6 +100,26 @@ def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Movin
     return problems
 
 
+def lifts_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
+    """The cams whose discs are at the end of their lifts at t, or by their rates just beyond it."""
+    problems = []
+    for coupling in mechanism.couplings:
+        shape = coupling.rows[0].parts[0].cam if coupling.rows else None
+        if shape is None or shape.lift.period:
+            continue
+        lift, shaft = shape.lift, mechanism.joints[coupling.rows[0].parts[0].coordinates[0].joint].name
+        angle, rate = coordinates.get((shaft, "angle"), (math.nan, 0.0))
+        if math.isnan(angle) or lift.first <= angle + beyond * rate <= lift.last:
+            continue
+        first, last = math.degrees(lift.first), math.degrees(lift.last)
+        message = f"at t = {t:.9g} s the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle from "
+        message += f"{first:.9g} to {last:.9g} deg"
+        end = f"> {last:.6g}" if angle > 0.5 * (lift.first + lift.last) else f"< {first:.6g}"
+        hint = f"a longer lift, or one with a period, or end the run before: until: {shaft}.angle {end} deg"
+        problems.append(Problem("path-ends", message, None, hint, f"couplings.{coupling.name}"))
+    return problems
+
+
 def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:
     """The expressions that have grown out of all proportion; now, before: instants, and the coordinates there."""
     problems = []
@@ -126,8 +147,8 @@ def large_values(mechanism: Mechanism, t: float, coordinates: Moving) -> list[Pr
 
 
 def _in_time(mechanism: Mechanism) -> Iterator[tuple[Expression, bool]]:
-    """Every expression that is not constant, and whether it drives a joint."""
-    driven = {id(joint.drive.value) for joint in mechanism.joints if joint.drive is not None}
+    """Every expression that is not constant, and whether it drives a joint or a rope."""
+    driven = {id(law.value) for law in mechanism.laws}
     for expression in mechanism.expressions():
         if expression.constant is None:
             yield expression, id(expression) in driven

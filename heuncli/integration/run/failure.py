@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import coordinates_at, without_value
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, lifts_left, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
@@ -26,12 +26,21 @@ def failure(progress: Progress, code: int) -> SolveError:
         itself = progress.moving.layout is scene.layout
         return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
     name, message, hint = TROUBLE[code]
-    if name == "closure-lost" and not (turned := turned_bushings(progress)):
+    if name == "closure-lost":
+        if known := lifts_ended(progress) or turned_bushings(progress):
+            return SolveError(*known)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
-    if name == "closure-lost":
-        return SolveError(*turned)
     return without_acceleration(progress, name, message, hint)
+
+
+def lifts_ended(progress: Progress) -> list[Problem]:
+    """The problems of cams that have turned off their lifts there, for which no closed chain has to be looked at."""
+    t, scene = progress.t, progress.scene
+    if not any(coupling.given.type == "cam" for coupling in scene.layout.mechanism.couplings):
+        return []
+    there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
+    return lifts_left(scene.layout.mechanism, t, progress.last * 2.0**-FARTHEST, there)
 
 
 def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:

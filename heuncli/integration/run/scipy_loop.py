@@ -164,8 +164,7 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
     named += [f"the impulse {blow.name}" for blow in mechanism.blows]
     whens = [blow.when for blow in mechanism.blows]
     named += [f"the condition {condition.name}" for condition in mechanism.conditions if condition not in whens]
-    drives = [joint.drive for joint in mechanism.joints if joint.drive is not None]
-    named += [f"the drive {drive.name}, whose rate jumps" for drive in drives if rate_jumps(drive.value, last)]
+    named += [f"the drive {law.name}, whose rate jumps" for law in mechanism.laws if rate_jumps(law.value, last)]
     problems = [Problem("method-scene", f"{method.name} does not run {name}", hint=SMOOTH_ONLY) for name in named]
     for expression in mechanism.expressions():
         if expression.uses and expression.held:

@@ -10,6 +10,7 @@ from heuncli.spec import format as f
 from heuncli.spec.format_couplings import CamEntry
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
+PERIODIC = 2  # a table's kind (expressions/programs.py)
 CONTACTS = {
     "roller": ("radius", "the radius of the roller"),
     "flat": ("normal", "the normal of the face, axes of the follower"),
@@ -87,11 +88,29 @@ def cam_contact(draft: DraftDocument) -> Iterator[Violation]:
 
 @rule("cam-lift")
 def cam_lift(draft: DraftDocument) -> Iterator[Violation]:
-    """The lift goes on smoothly as the disc turns round: its period is one turn, or a whole part of one."""
+    """The lift goes on smoothly as the disc turns round: its period is one turn, or a whole part of one; or it ends."""
     for name, cam in cams(draft):
+        if cam.lift.kind != PERIODIC:
+            yield from open_lift(draft, name, cam)
+            continue
         period = cam.lift.numbers[0]
         turns = math.tau / period if period > 0.0 else 0.0
         if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
-            found = f"its period is {math.degrees(period):.6g} deg" if period > 0.0 else "it is not periodic"
-            message = f"the lift {cam.lift.name} does not fit a turn: {found}"
+            message = f"the lift {cam.lift.name} does not fit a turn: its period is {math.degrees(period):.6g} deg"
             yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or a whole part of it")
+
+
+def open_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
+    """What is wrong with a lift over a part of a turn: it is of a disc that swings, and begins on it."""
+    first, last = cam.lift.x[0], cam.lift.x[-1]
+    if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
+        message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg: a disc has a turn and no more"
+        yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
+        return
+    shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
+    held = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
+    if held is not None and not first + cam.phase <= held <= last + cam.phase:
+        covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
+        message = f"angle {math.degrees(held):.6g} deg is off the lift of cam {name}, which covers {covered}"
+        hint = "hold the disc where it has a lift, or give the lift a period"
+        yield Violation(("joints", cam.of[0], "initial", "angle"), message, hint)

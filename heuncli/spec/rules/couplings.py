@@ -163,11 +163,16 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
         if not isinstance(rope, f.RopeEntry):
             continue
         path = ("couplings", name)
-        if rope.length is not None and not rope.length > 0.0:
-            yield Violation((*path, "length"), f"a rope of length {rope.length:g} m", "leave it out: as assembled")
+        length = None if rope.length is None else rope.length.constant
+        if length is not None and not length > 0.0:
+            yield Violation((*path, "length"), f"a rope of length {length:g} m", "leave it out: as assembled")
         if rope.length is not None and any(place.slip == "none" for place in rope.through):
             message = "the length of a rope that is held on a sheave"
-            yield Violation((*path, "length"), message, "leave it out: what is wound on the sheave is not told, either")
+            yield Violation(
+                (*path, "length"),
+                message,
+                "leave it out: what is wound on the sheave is not told, either; a drive of a drum's pin winds it",
+            )
         if rope.restitution is None:
             continue
         if not 0.0 <= rope.restitution <= 1.0:

@@ -26,7 +26,7 @@ def moves(recovery: Recovery) -> list[str]:
         return []
     mechanism, states = setup.scene.mechanism, recovery.states
     t = float(recovery.recovered.times[0])
-    jets = [j.drive.value.derivatives(t) for j in mechanism.joints if j.drive is not None]
+    jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(second != 0.0 for _, _, second in jets):
         return []
     speed = np.abs(states.v_centre[0]).max() / setup.scene.layout.size + np.abs(states.omega[0]).max()

@@ -62,7 +62,7 @@ class Balance:
         """The energy of more instants, or the powers in its place."""
         if self.span is not None:
             joints, layout = recovery.joints, self.setup.scene.layout
-            off = power_imbalance(layout, recovery.states, recovery.loads, joints, self.span)
+            off = power_imbalance(layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span)
             self.imbalance = larger(self.imbalance, off)
             acting = [(largest(x.action.force), largest(x.action.moment)) for x in recovery.loads]
             before = self.loads or [(0.0, 0.0)] * len(acting)

@@ -86,7 +86,7 @@ def kind_of_motion(layout: Layout, last: float) -> list[str]:
 def is_conservative(layout: Layout) -> bool:
     """Whether nothing takes energy or gives it: weight and springs alone, no drive, no blow, nothing that is struck."""
     mechanism = layout.mechanism
-    moved = any(joint.drive is not None for joint in mechanism.joints)
+    moved = bool(mechanism.laws)
     return not (moved or layout.contacts or mechanism.blows) and all(load.is_conservative for load in mechanism.loads)
 
 

@@ -34,7 +34,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
     block: Block = {
         "space": "planar" if mechanism.planar else "spatial",
         "freedoms": layout.tree_freedoms - (found.closed - found.dependent) - scene.undetermined,
-        "driven": sum(1 for j in mechanism.joints if j.drive is not None),
+        "driven": len(mechanism.laws),
         "bodies": len(mechanism.bodies), "loops": len(layout.spanning.cut), "redundant": found.generic,
         "method": method, "reasons": [], "joints": len(mechanism.joints), "grubler": grubler(mechanism),
         "chosen": list(scene.start.chosen), "notes": [],
@@ -118,7 +118,7 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings]
     if coupled:
         sentences.append(f"coupled: {some(coupled)}")
-    driven = [j.name for j in mechanism.joints if j.drive is not None]
+    driven = [mechanism.owner(law.owner).partition(".")[2] for law in mechanism.laws]
     if driven:
         sentences.append(f"driven: {some(driven)}")
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]

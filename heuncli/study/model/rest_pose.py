@@ -90,7 +90,7 @@ def require_no_way(layout: Layout, state: Array) -> None:
 
 def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
     """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent."""
-    drives = some([f"drives.{name}" for name in going_on(mechanism)])
+    drives = some(list(going_on(mechanism)))
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
     least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"
     loose = own.indifferent + own.flat + own.edge

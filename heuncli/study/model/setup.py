@@ -17,6 +17,7 @@ from heuncli.integration.methods.method import Method
 from heuncli.integration.methods.registry import method_of
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.mechanism.build import build, forms_of
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import Mechanism
 from heuncli.method_rows import AUTO
 from heuncli.records import record, replace
@@ -24,6 +25,7 @@ from heuncli.reduction import compose as reduction
 from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import redundancy
 from heuncli.results import Array, Block
+from heuncli.spec.couplings import Rope
 from heuncli.spec.models import Spec
 from heuncli.stages import ANEW, Stages
 from heuncli.study.model.method_choice import first_choice, why
@@ -99,10 +101,6 @@ def set_up(
         mechanism = with_slack_ropes(mechanism)
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
     prepared = prepare_coupled(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
-    if any(coupling.given.type == "cam" for coupling in prepared.mechanism.couplings):
-        from heuncli.tree.cam_flanks import require_flanks  # few scenes have them
-
-        require_flanks(prepared.layout)
     if any(drive.by_rate for drive in spec.drives.values()):
         from heuncli.tree.driven_starts import require_lengths  # few scenes have them
 
@@ -139,7 +137,7 @@ def set_up(
 
 def require_drives(mechanism: Mechanism, t: float) -> None:
     """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
-    jets = [joint.drive.value.derivatives(t) for joint in mechanism.joints if joint.drive is not None]
+    jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
         from heuncli.integration.diagnosis.domains import large_values  # only on the way to an error
 
@@ -165,12 +163,16 @@ def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
     So does what a cam presses: it may lie on it or not.
     """
     joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
-    couplings = [
-        replace(own, rows=tuple(replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r
-                                for r in own.rows))
-        for own in mechanism.couplings
-    ]  # fmt: skip
-    return replace(mechanism, joints=tuple(joints), couplings=tuple(couplings))
+    return replace(mechanism, joints=tuple(joints), couplings=tuple(slackening(own) for own in mechanism.couplings))
+
+
+def slackening(own: Coupling) -> Coupling:
+    """A coupling whose one-sided conditions open and close; of a rope they are yet to be made, as it says itself."""
+    rows = [replace(r, restitution=0.0) if r.tension_only and r.restitution is None else r for r in own.rows]
+    given = own.given
+    if isinstance(given, Rope) and given.tension_only and given.restitution is None:
+        given = given._replace(restitution=0.0)
+    return replace(own, rows=tuple(rows), given=given)
 
 
 def asked_part(spec: Spec, asked: Selection, reduce: bool) -> tuple[Spec, tuple[str, ...]]:

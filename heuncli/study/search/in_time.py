@@ -29,7 +29,7 @@ ORDERS = 3  # value, first and second derivative
 
 def given_in_time(mechanism: Mechanism) -> tuple[list[Expression], list[Expression]]:
     """Loads that are functions of time alone, and the laws of drives that are no constants, each once."""
-    laws = {joint.drive.value for joint in mechanism.joints if joint.drive is not None}
+    laws = {law.value for law in mechanism.laws}
     in_time = dict.fromkeys(e for e in mechanism.expressions() if e.time_dependent and not e.uses)
     return [e for e in in_time if e not in laws], [e for e in in_time if e in laws]
 

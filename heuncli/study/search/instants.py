@@ -66,7 +66,7 @@ def with_those_in_time(setup: Setup, grid: Array, most: int) -> tuple[Array, boo
 
 def turned_between(setup: Setup, history: History, grid: Array) -> Array:
     """The largest angle [rad] by which any body turns between neighbouring instants, (n - 1,)."""
-    driven = any(joint.drive is not None for joint in setup.scene.mechanism.joints)
+    driven = setup.scene.layout.driven
     known = resample(setup.runner, history, grid) if driven else history.recovered
     omega = np.sqrt(finite(squares(rows(known.bodies["omega"]))).max(axis=0, initial=0.0))
     omega = np.interp(grid, known.times, omega)

@@ -245,7 +245,7 @@ def held(runner: Runner, t: float, state: Array) -> Array:
 
 def require_followed(runner: Runner, run: Trajectory) -> None:
     """Raise SolveError where drives of one loop contradict each other within the run."""
-    if sum(joint.drive is not None for joint in runner.layout.mechanism.joints) > 1 and runner.layout.rows:
+    if len(runner.layout.mechanism.laws) > 1 and runner.layout.rows:
         from heuncli.integration.check.contradictions import unfollowed  # few scenes need it
 
         problem = unfollowed(runner, run)
