@@ -1,8 +1,9 @@
-"""Gears and screws as rows on absolute coordinates: a load fixed in what carries both, which their motions cannot feed.
+"""Gears, belts and screws as rows on absolute coordinates: a load fixed in what carries both, which they cannot feed.
 
     s = v_2(P) − v_1(P),  f·s + m·(σ_2 − σ_1) = 0          P, f, m: fixed in the carrier c
     γ = (σ_c×f)·s + f·(σ_2×(Ṗ − ċ_2) − σ_1×(Ṗ − ċ_1)) + (σ_c×m)·(σ_2 − σ_1)
-Of teeth f lies along the way of the wheel at P, less what the helix turns it by; of a thread f is its axis.
+Of teeth f lies along the way of the wheel at P, less what the helix turns it by; of a thread f is its axis; of a belt f
+and m are half of 1 N along the one strand and half of -1 N along the other.
 """
 
 from __future__ import annotations
@@ -43,9 +44,9 @@ def teeth(read: Model) -> list[Teeth]:
     joints = {j.name: j for j in read.joints}
     found = []
     for name, given in (read.scene.get("couplings") or {}).items():
-        if given["type"] in ("gear", "screw") and len(given["of"]) == 2:
+        if given["type"] in MADE and len(given["of"]) == 2:
             pair = [joints[k] for k in given["of"]]
-            found.append((gear if given["type"] == "gear" else screw)(read, name, given, pair[0], pair[1]))
+            found.append(MADE[given["type"]](read, name, given, pair[0], pair[1]))
     return found
 
 
@@ -87,6 +88,55 @@ def screw(read: Model, name: str, given: Mapping[str, Any], first: Joint, second
     signs = [1.0 if j.a.body == carrier else -1.0 for j in (slide, turn)]
     f, m = signs[0] * nut.axis, by * signs[1] * spindle.axis
     return Teeth(name, carrier, spindle.body, nut.body, spindle.point, f, m)
+
+
+def strands(read: Model, given: Mapping[str, Any], first: Joint, second: Joint) -> list[tuple[Array, Array, Array]]:
+    """Both strands of a belt, axes of what carries it: where it leaves the first pulley and the second; its way.
+
+    By the angle between a strand and the line of centres, to either side of it.
+    """
+    _, one, other = parts(read, first, second)
+    C, n = one.point, one.axis
+    D = other.point - n * float(n @ (other.point - C))
+    x, far = unit(D - C), float(np.linalg.norm(D - C))
+    r, R = given["radii"]
+    lean = math.asin((R + r if given.get("crossed") else R - r) / far)
+    found = []
+    for side in (1.0, -1.0):
+        y = side * cross(n, x)
+        way = math.cos(lean) * x + math.sin(lean) * (-y if given.get("crossed") else y)
+        out = math.cos(lean) * y - math.sin(lean) * (-x if given.get("crossed") else x)
+        found.append((C + r * out, D - R * out if given.get("crossed") else D + R * out, way))
+    return found
+
+
+def belt(read: Model, name: str, given: Mapping[str, Any], first: Joint, second: Joint) -> Teeth:
+    """A belt in the plane of its first pulley."""
+    carrier, one, other = parts(read, first, second)
+    f, m = np.zeros(3), np.zeros(3)
+    for half, (leaves, _, way) in zip((0.5, -0.5), strands(read, given, first, second), strict=True):
+        f, m = f + half * way, m + half * cross(leaves - one.point, way)
+    return Teeth(name, carrier, one.body, other.body, one.point, f, m)
+
+
+def pulls(read: Model, state: State) -> dict[str, list[tuple[str, Array, Array]]]:
+    """What belts at rest pull with, by their names: at the body, from the place, with the force."""
+    joints = {j.name: j for j in read.joints}
+    found = {}
+    for name, given in (read.scene.get("couplings") or {}).items():
+        if given["type"] != "belt":
+            continue
+        one, other = (joints[k] for k in given["of"])
+        carrier, first, second = parts(read, one, other)
+        c = placed(state, carrier)
+        found[name] = []
+        for leaves, reaches, way in strands(read, given, one, other):
+            force = given["pretension"] * (c.rotation @ way)
+            found[name] += [(first.body, c.point(leaves), force), (second.body, c.point(reaches), -force)]
+    return found
+
+
+MADE = {"gear": gear, "screw": screw, "belt": belt}
 
 
 def lines(read: Model, state: State) -> list[tuple[str, Array, Array, float]]:

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from tests.oracle import gears
 from tests.oracle.read import GROUND, End, Joint, Model, State, at_time, end, placed, start_state, vector_at
 from tests.oracle.rows import coordinates, directions
 from tests.oracle.turns import Array, attitude, cross, unit
@@ -46,7 +47,14 @@ def pushes(scene: Model, state: State, t: float) -> dict[str, list[Push]]:
     }
     for name, spec in scene.loads.items():
         found[name] = KINDS_OF_LOAD[spec["type"]](scene, state, t, spec)
+    for name, pulls in gears.pulls(scene, state).items():
+        found[name] = [Push(body, place, F, np.zeros(3)) for body, place, F in pulls]
     return found
+
+
+def from_outside(scene: Model, name: str) -> bool:
+    """Whether a load is no matter between two bodies, as all others are, a belt's pretension among them."""
+    return name in scene.loads and scene.loads[name]["type"] in ("force", "couple")
 
 
 def force(scene: Model, state: State, t: float, spec: Spec) -> list[Push]:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.oracle.loads import Push, gathered, pushes
+from tests.oracle.loads import Push, from_outside, gathered, pushes
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.rows import Rows, assemble
 from tests.oracle.turns import Array, cross
@@ -313,7 +313,7 @@ def foundation(
     """(55): s = Σk − Σmẍ and M_s about a point; k are weight, forces and couples, all else is internal."""
     s, M_s = np.zeros(3), np.zeros(3)
     for name, parts in loads.items():
-        if name == "gravity" or scene.loads[name]["type"] in ("force", "couple"):
+        if name == "gravity" or from_outside(scene, name):
             for push in (p for p in parts if p.body != GROUND):
                 s, M_s = s + push.force, M_s + push.about(about)
     M, b = inertia(scene, state)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from tests.oracle.loads import from_outside
 from tests.oracle.masses import Mass
 from tests.oracle.read import GROUND, Model, Placed, Scene, State, end, model, placed
 from tests.oracle.rows import directions
@@ -37,7 +38,7 @@ def elements(scene: Scene, state: State, solution: Solution, about: Array) -> di
     found = {}
     for name, parts in solution.loads.items():
         own = [p for p in parts if p.body == GROUND]
-        if own and read.loads[name]["type"] not in ("force", "couple"):
+        if own and not from_outside(read, name):
             found[name] = Wrench(np.sum([p.force for p in own], axis=0), np.sum([p.about(about) for p in own], axis=0))
     names = {d["joint"]: name for name, d in (scene.get("drives") or {}).items()}
     for j in read.joints:

@@ -16,8 +16,8 @@ from heuncli.errors import HeunError
 from heuncli.results import Array
 from tests.oracle.read import GROUND, Placed, placed, state_at
 from tests.oracle.scenes import Maker
-from tests.oracle.turns import about, across, cross, random_rotation, random_unit
-from tests.shared.geared_scenes import member, mesh, thread
+from tests.oracle.turns import about, across, random_rotation, random_unit
+from tests.shared.geared_scenes import belt, member, mesh, thread
 from tests.shared.rolling_scenes import stand
 from tests.shared.scenes import solved
 from tests.shared.trees import cut_through
@@ -62,12 +62,12 @@ class Parts:
 
 
 def gears(form: str) -> Callable[[Parts, str], None]:
-    """Two wheels, cones, a wheel and a rack, or a thread."""
+    """Two wheels, cones, a wheel and a rack, a thread, or pulleys."""
 
     def add(parts: Parts, name: str) -> None:
-        make, names = (thread if form == "screw" else mesh), (f"{name}a", f"{name}b")
+        make, names = {"screw": thread, "belt": belt}.get(form, mesh), (f"{name}a", f"{name}b")
         entry = make(parts.maker, parts.rng, parts.base(), form, names)
-        if form != "screw" and parts.rng.random() < 0.5:
+        if make is mesh and parts.rng.random() < 0.5:
             entry["pressure_angle"] = 0.35
         parts.couple(name, entry)
 
@@ -77,15 +77,6 @@ def gears(form: str) -> Callable[[Parts, str], None]:
 def threaded_cylinder(parts: Parts, name: str) -> None:
     joint = parts.member(parts.base(), name, "cylinder", parts.rng.uniform(-1, 1, 3), random_unit(parts.rng))
     parts.couple(name, {"type": "screw", "of": [joint], "lead": float(parts.rng.uniform(-3, 3))})
-
-
-def belt(parts: Parts, name: str) -> None:
-    rng, base, n, P = parts.rng, parts.base(), random_unit(parts.rng), parts.rng.uniform(-1, 1, 3)
-    radii = rng.uniform(0.1, 0.4, 2)
-    Q = P + rng.uniform(0.85, 1.2) * across(n)[0]
-    of = [parts.member(base, f"{name}a", "pin", P, n), parts.member(base, f"{name}b", "pin", Q, parts.sign() * n)]
-    crossed = bool(rng.random() < 0.4)
-    parts.couple(name, {"type": "belt", "of": of, "radii": radii.tolist(), "pretension": 40.0, "crossed": crossed})
 
 
 def ratio(parts: Parts, name: str) -> None:
@@ -167,19 +158,19 @@ def cam(parts: Parts, name: str) -> None:
     contact = [{"contact": "roller", "radius": 0.02}, {"contact": "point"},
                {"contact": "flat", "normal": (Q @ [0.15, 1, 0]).tolist()}][rng.integers(3)]  # fmt: skip
     P, x = rng.uniform(-1, 1, 3), np.linspace(0.0, 2.0 * np.pi, 49)
-    wave = (np.sin(x) - 0.0 * x) * 0.02 + 0.006 * np.cos(2.0 * x)
+    wave = 0.02 * np.sin(x) + 0.006 * np.cos(2.0 * x)
     lift = wave if slides else 0.1 + 4.0 * wave
     lift[-1] = lift[0]
     parts.scene.setdefault("tables", {})[f"{name}_lift"] = {
         "x": x.tolist(), "y": lift.tolist(), "interpolation": "cubic", "period": 2.0 * math.pi,
     }  # fmt: skip
-    x[-1] = 2.0 * math.pi
     own = {"to": {"body": f"{name}d", "at": [0.0, 0.0, 0.0]}, "axis": (Q @ [0, 0, 1]).tolist()}
     start = {"initial": {"angle": float(rng.uniform(0, 6)), "rate": float(rng.uniform(-5, 5))}}
     parts.scene["joints"][f"{name}_shaft"] = {"type": "pin", "from": {"body": base, "at": P.tolist()}, **own, **start}
     parts.scene["joints"][f"{name}_guide"] = {
         "type": "slide" if slides else "pin", "from": {"body": base, "at": (P + Q @ pivot).tolist()},
-        "to": {"body": f"{name}f", "at": [0.0, 0.0, 0.0]}, "axis": (Q @ ([0.1, 1, 0] if slides else [0, 0, 1])).tolist(),
+        "to": {"body": f"{name}f", "at": [0.0, 0.0, 0.0]},
+        "axis": (Q @ ([0.1, 1, 0] if slides else [0, 0, 1])).tolist(),
     }  # fmt: skip
     for body in (f"{name}d", f"{name}f"):
         parts.scene["bodies"][body] = {**parts.maker.mass(), "points": {}}
@@ -222,8 +213,8 @@ def wheel(parts: Parts, name: str) -> None:
 
 
 ELEMENTS: dict[str, Callable[[Parts, str], None]] = {
-    **{form: gears(form) for form in ("external", "internal", "bevel", "rack", "screw")},
-    "threaded": threaded_cylinder, "belt": belt, "ratio": ratio, "differential": differential, "rope": rope,
+    **{form: gears(form) for form in ("external", "internal", "bevel", "rack", "screw", "belt")},
+    "threaded": threaded_cylinder, "ratio": ratio, "differential": differential, "rope": rope,
     "points": rope_through_points, "cv": constant_velocity, "cam": cam, "curve": curve, "wheel": wheel,
 }  # fmt: skip
 LAST = ("cam", "curve")  # Maker does not know where these are
@@ -251,7 +242,11 @@ def drawn(rng: np.random.Generator, kinds: tuple[str, ...]) -> Parts:
                                             "time": 0.05}}  # fmt: skip
     of = [entry["of"][0] for entry in parts.scene.get("couplings", {}).values() if entry["type"] in OF_JOINTS]
     kinds_of = {n: j["type"] for n, j in parts.scene["joints"].items()}
-    able = [n for n in [*parts.loose(tuple(STARTS)), *of] if kinds_of[n] in STARTS and "initial" not in parts.scene["joints"][n]]
+    able = [
+        n
+        for n in [*parts.loose(tuple(STARTS)), *of]
+        if kinds_of[n] in STARTS and "initial" not in parts.scene["joints"][n]
+    ]
     if able and rng.random() < 0.25:
         parts.scene["latches"] = {"latch": {"joint": able[rng.integers(len(able))], "when": "t > 0.06"}}
     for joint in [able[k] for k in rng.permutation(len(able))[: rng.integers(1, 3)]]:

@@ -1,4 +1,4 @@
-"""Random scenes with gears and screws: a carrier that moves anyhow, two members on it, what hangs on these."""
+"""Random scenes with gears, belts and screws: a carrier that moves anyhow, two members on it, what hangs on these."""
 
 from __future__ import annotations
 
@@ -17,19 +17,21 @@ HUNG = ("pin", "ball", "slide", "universal")
 FORMS = ("external", "internal", "bevel", "rack", "screw")
 
 
-def geared_scene(seed: int) -> dict[str, Any]:
-    """A pair of FORMS, as its number says, on a body or the ground."""
+def geared_scene(seed: int, form: str | None = None, loops: int = 0) -> dict[str, Any]:
+    """A pair of FORMS, as its number says, or this one, on a body or the ground; loops: chains that are closed."""
     rng = np.random.default_rng(seed)
     maker = Maker(rng, "given")
     carrier = GROUND
     if seed % 3:
         maker.body("carrier", HUNG, 0.0, 1.0, 0.3)
         carrier = "carrier"
-    form = FORMS[seed % len(FORMS)]
-    couple = thread if form == "screw" else mesh
+    form = form or FORMS[seed % len(FORMS)]
+    couple = {"screw": thread, "belt": belt, "aside": belt}.get(form, mesh)
     maker.scene["couplings"] = {"mesh": couple(maker, rng, carrier, form)}
     for k in range(seed % 2 + 1):
         maker.body(f"b{k}", HUNG, 0.5, 0.0, 0.0)
+    for k in range(loops):
+        maker.closure(f"loop{k}", ("rod", "line", "plane", "ball"))
     maker.set_moving()
     maker.loads(("force", "couple", "spring", "torque", "damper"), True)
     return maker.scene
@@ -58,6 +60,18 @@ def mesh(
     helix = float(rng.uniform(-0.4, 0.4))
     at = {"body": carrier, "at": P.tolist()}
     return {"type": "gear", "of": of, "at": at, "helix": helix, "pressure_angle": 0.0}
+
+
+def belt(
+    maker: Maker, rng: np.random.Generator, carrier: str, form: str, names: tuple[str, str] = ("one", "two")
+) -> dict[str, Any]:
+    """Two pulleys, of parallel axes, and the entry of their belt; of form `aside` not in one plane."""
+    n, P = random_unit(rng), rng.uniform(-1, 1, 3)
+    Q = P + rng.uniform(0.85, 1.2) * across(n)[0] + (rng.uniform(-0.2, 0.2) * n if form == "aside" else 0.0)
+    for name, point, axis in ((names[0], P, n), (names[1], Q, math.copysign(1.0, float(rng.standard_normal())) * n)):
+        member(maker, rng, carrier, name, "pin", point, axis)
+    sizes = {"radii": rng.uniform(0.1, 0.4, 2).tolist(), "crossed": bool(rng.random() < 0.4)}
+    return {"type": "belt", "of": [f"j_{name}" for name in names], "pretension": float(rng.uniform(5, 40)), **sizes}
 
 
 def thread(
@@ -91,6 +105,6 @@ def member(
 
 
 @cache
-def geared(seed: int) -> Case:
+def geared(seed: int, form: str | None = None, loops: int = 0) -> Case:
     """A random scene's run, with the oracle's answer at every instant."""
-    return case({**geared_scene(seed), "foundation": {"about": ABOUT.tolist()}})
+    return case({**geared_scene(seed, form, loops), "foundation": {"about": ABOUT.tolist()}})

@@ -366,8 +366,20 @@ def _rewritten(value: Any, change: Callable[[str], str]) -> Any:
 def reordered(tree: Tree, random: Random) -> Tree:
     """The entries of all blocks, and the shapes of bodies, in another order."""
     tree = copy.deepcopy(tree)
-    for block in ("parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "sections", "tables",
-                  "couplings", "rolling", "latches"):
+    for block in (
+        "parameters",
+        "bodies",
+        "joints",
+        "drives",
+        "forces",
+        "impulses",
+        "stops",
+        "sections",
+        "tables",
+        "couplings",
+        "rolling",
+        "latches",
+    ):
         if isinstance(tree.get(block), dict):
             tree[block] = _shuffled(random, tree[block])
     for _, body in entries(tree, "bodies"):
