@@ -2,11 +2,7 @@
 
     radial = |F| tan(alpha_n) / cos(beta)    axial = |F| tan(beta)    normal = along the line of action
     torque = F lead / (2 pi)                 tight, slack = T_0 +- |F| / 2
-<<<<<<< HEAD
 F: the load carried. In a blow it is an impulse, and the strands have no pull of their own beside it.
-=======
-F: the load carried, in blows an impulse. Blows have no pretension.
->>>>>>> theirs
 """
 
 from __future__ import annotations
@@ -20,37 +16,22 @@ from heuncli.results import Array
 from heuncli.spec import couplings as c
 
 
-<<<<<<< HEAD
 def gear_told(given: c.Gear, F: Array, struck: bool) -> dict[str, Array]:
-=======
-def gear_told(given: c.Gear, F: Array, pretensioned: bool) -> dict[str, Array]:
->>>>>>> theirs
     """Parts of a tooth force [N]."""
     radial = np.abs(F) * (math.tan(given.pressure_angle) / math.cos(given.helix))
     axial = np.abs(F) * abs(math.tan(given.helix))
     return {"radial": radial, "axial": axial, "normal": np.sqrt(F * F + radial * radial + axial * axial)}
 
 
-<<<<<<< HEAD
 def screw_told(given: c.Screw, F: Array, struck: bool) -> dict[str, Array]:
-=======
-def screw_told(given: c.Screw, F: Array, pretensioned: bool) -> dict[str, Array]:
->>>>>>> theirs
     """The torque that a thrust takes [N m]."""
     return {"torque": F * (given.lead / math.tau)}
 
 
-<<<<<<< HEAD
 def belt_told(given: c.Belt, F: Array, struck: bool) -> dict[str, Array]:
     """The pulls of both strands [N]."""
     at_rest = 0.0 if struck else given.pretension
     return {"tight": at_rest + 0.5 * np.abs(F), "slack": at_rest - 0.5 * np.abs(F)}
-=======
-def belt_told(given: c.Belt, F: Array, pretensioned: bool) -> dict[str, Array]:
-    """The pulls of both strands [N]."""
-    T0 = given.pretension if pretensioned else 0.0
-    return {"tight": T0 + 0.5 * np.abs(F), "slack": T0 - 0.5 * np.abs(F)}
->>>>>>> theirs
 
 
 TOLD: dict[str, Callable[..., dict[str, Array]]] = {"gear": gear_told, "screw": screw_told, "belt": belt_told}

@@ -63,7 +63,7 @@ def flank(part: CouplingPart, shaft: Joint, follower: Joint, R_shaft: Array, R_f
 
 def turned(R: Array, x: Array) -> Array:
     """Vectors (m, 3), each by its own rotation (m, 3, 3)."""
-    return np.einsum("mij,mj->mi", R, x)
+    return np.asarray(np.einsum("mij,mj->mi", R, x))
 
 
 def of_roller(

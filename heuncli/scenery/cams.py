@@ -38,15 +38,14 @@ def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
         if spec.joints[given.shaft].b == body:
             yield outline(own, row.parts[0], joints[0].axis) + joints[0].q
         elif given.normal is not None:
-            yield face(own, given, joints[0].axis)
+            yield face(own, given.at, np.cross(joints[0].axis, given.normal))
 
 
-def face(own: Flank, given: Cam, axis: Array) -> Array:
-    """The part of a flat face that the flank comes to, (2, 3), the same to both sides of its point."""
+def face(own: Flank, at: tuple[float, float, float], along: Array) -> Array:
+    """The part of a flat face that the flank comes to, (2, 3), the same to both sides of its point; along: of it."""
     off = own.places - own.centres
-    along = np.cross(axis, given.normal)
     reach = float(np.sqrt(np.max(np.sum(off * off, axis=1)) / (along @ along)))
-    return np.array(given.at) + np.outer([-reach, reach], along)
+    return np.asarray(np.array(at) + np.outer([-reach, reach], along))
 
 
 def outline(own: Flank, part: CouplingPart, axis: Array) -> Array:

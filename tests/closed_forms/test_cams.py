@@ -279,9 +279,10 @@ def test_the_cycle_of_a_cam_that_presses() -> None:
     pressed, guided = (balance(read(t)) for t in (text, text.replace("two_sided: false", "two_sided: true")))
     assert any("the follower of cam cam is taken to stay" in note for note in pressed.notes)
     assert not guided.notes
-    assert pressed.orders == guided.orders
+    for kind, rows in guided.orders.items():
+        near([row.amplitude for row in pressed.orders[kind]], [row.amplitude for row in rows], 1.0, 1e-12)
     first = next(row for row in pressed.orders["force"] if row.order == 1.0)
-    assert first.amplitude == pytest.approx(0.5 * E * 400.0, rel=1e-6)
+    near(first.amplitude, [0.0, 0.5 * E * 400.0, 0.0], 2.0, 1e-6)
     with pytest.raises(SolveError, match=r"couplings\.cam may open and close"):
         balance(read(text.replace("two_sided: false", "restitution: 0.5")))
     with pytest.raises(SolveError, match=r"it ends at 40°: .* turns off its lift"):

@@ -53,14 +53,8 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
             if own.coupling.given.type in ("gear", "screw", "belt"):
                 from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
-<<<<<<< ours
                 given = own.coupling.given
                 shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried, struck)
-=======
-                pretensioned = any(load.name == own.coupling.name for load in mechanism.loads)  # in no blow
-                told = TOLD[own.coupling.given.type](own.coupling.given, own.carried, pretensioned)
-                shown["couplings"][own.coupling.name] |= told
->>>>>>> theirs
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 
