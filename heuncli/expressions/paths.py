@@ -31,7 +31,7 @@ NO_PLANE.setflags(write=False)
 class Path:
     """A path: knots (n + 1,), coefficients (n, 4, 3) [m]; period: of the parameter where it is closed, else 0.
 
-    radius: of a roller [m] whose centre is to the left of the path, seen from where the normal (3,) of its plane points.
+    radius: of a roller [m] whose centre is to the left of the path, seen so that its plane's normal (3,) points here.
     """
 
     knots: Array

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError, SpecError
-from heuncli.expressions.curves import fit
 from heuncli.expressions.beside import tightest
+from heuncli.expressions.curves import fit
 from heuncli.expressions.paths import cusp, path_beside, path_of
 from heuncli.results import Array
 from tests.shared.cams import table
@@ -249,6 +249,7 @@ def test_what_does_not_act_along_a_path(head: str, message: str) -> None:
 
 
 WAVY = [table(lambda s: s, -1.0, 7.0, 160), table(lambda s: 0.3 * np.cos(s), -1.0, 7.0, 160)]
+ROUNDED = (2.0 * math.pi / 240) ** 2 / 12.0
 ABOVE, BELOW = "[0, -1, 0]", "[0, 2, 0]"  # where these point to the eye, the track goes on to the right, or to the left
 
 
@@ -267,7 +268,7 @@ def beside_the_waves(s: Array, R: float) -> tuple[Array, Array, Array, Array]:
 
 @pytest.mark.parametrize(("R", "normal"), [(0.5, ABOVE), (-0.5, BELOW)])
 def test_a_roller_beside_a_wavy_track(R: float, normal: str) -> None:
-    """Its speed is that of its height, and dt = |p'| ds / v; its path curves with k / (1 - k R), which m v^2 goes with."""
+    """Its speed is that of its height, and dt = |p'| ds / v; its centre's path curves with k / (1 - k R)."""
     knots = np.linspace(-1.0, 7.0, 161)[30:141]
     first = beside_the_waves(knots[:1], R)
     nodes, weights = np.polynomial.legendre.leggauss(8)
@@ -310,14 +311,12 @@ def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
             for one, new in zip(ring, other, strict=True):
                 wanted = wanted.replace(one, new)
             as_ring = solved(wanted)
-            for name in ("wire", "hub"):
-                near(found.joints[name]["force"], as_ring.joints[name]["force"], 30.0, 1e-5)
-            near(found.coordinates["wire"]["travel"], as_ring.coordinates["wire"]["travel"], 3.0, 1e-6)
+            for name in ("wire", "hub"):  # a spline's curvature is off by h^2/12, of both
+                near(found.joints[name]["force"], as_ring.joints[name]["force"], 130.0, 2.0 * ROUNDED)
+            near(found.coordinates["wire"]["travel"], as_ring.coordinates["wire"]["travel"], 3.3, 2.0 * ROUNDED)
             away = found.joints["wire"]["contact_point"] - found.joints["hub"]["point"]
-            turned = found.coordinates["hub"]["angle"]
-            place = np.stack([np.cos(turned), np.sin(turned), 0.0 * turned], axis=-1) * 0.1
-            s = found.coordinates["wire"]["travel"] + turned
-            near(away - place, np.stack([np.cos(s), np.sin(s), 0.0 * s], axis=-1), 1.0, 1e-8)
+            s = found.coordinates["wire"]["travel"] + found.coordinates["hub"]["angle"]
+            near(away, np.stack([np.cos(s), np.sin(s), 0.0 * s], axis=-1), 1.0, 1e-8)
 
 
 @pytest.mark.parametrize(("keys", "message"), [

@@ -78,6 +78,7 @@ def faults_of_roller(name: str, joint: f.CurveJoint, planar: bool, path: Path) -
         return
     s, share = tightest(path_beside(path, joint.radius, normal))
     if share > 1.0 - tolerances.STANDS_STILL:
+        s = s if abs(s) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0  # else it is rounding
         curved = f"the path curves with {joint.radius / share:.4g} m at travel {s:.6g}, where the roller has "
         hint = "a smaller roller, a path that bends less, or the other side of it: the opposite normal"
         yield Violation((*at, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
