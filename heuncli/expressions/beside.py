@@ -99,8 +99,8 @@ def turns(path: Track, i: int) -> Array:
     for j, n in enumerate(path.normal):
         k, m = (j + 1) % 3, (j + 2) % 3
         a = np.polyadd(a, n * np.polysub(np.polymul(slope[k], bend[m]), np.polymul(slope[m], bend[k])))
-    b: Array = np.sum([np.polymul(x, x) for x in slope], axis=0)
-    half: Array = np.sum([np.polymul(x, x1) for x, x1 in zip(slope, bend, strict=True)], axis=0)
+    b: Array = np.sum([np.convolve(x, x) for x in slope], axis=0)
+    half: Array = np.sum([np.convolve(x, x1) for x, x1 in zip(slope, bend, strict=True)], axis=0)
     found = np.roots(np.polysub(np.polymul(np.polyder(a), b), 3.0 * np.polymul(a, half)))
     inside = found[(found.real > 0.0) & (found.real < 1.0)].real  # a pair that rounding made is looked at, too
     return np.asarray(path.knots[i] + length * inside)
