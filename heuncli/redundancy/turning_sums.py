@@ -111,7 +111,7 @@ def factors(rows: Array) -> Array | None:
 
 
 def solved(T: Array, r: Array, k: int) -> Array:
-    """The solutions x (n_t, n) of triangular T x = r, from factors of k rows; what rounding alone may have made is zero.
+    """Solutions x (n_t, n) of triangular T x = r, from factors of k rows; zero where rounding alone may have made them.
 
     Householder's factors are those of columns off by at most k (n + 1) u of their lengths, here 1 at most. So x is off
     by at most that, times |T^-1|, times 1 + sum |x|.
