@@ -164,6 +164,7 @@ class ContactRow:
     row: int
     sense: int
     opens: int
+    freedom: int = -1
     held_at: int = 0
 
 
