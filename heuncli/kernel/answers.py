@@ -16,7 +16,20 @@ if not cython.compiled:
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
-    from heuncli.kernel.scene import APART, CARRIES, LEANS, Body, Closure, Contact, Freedom, Load, Scene
+    from heuncli.kernel.scene import (
+        APART,
+        CARRIES,
+        LEANS,
+        MESH,
+        SUM,
+        TURN,
+        Body,
+        Closure,
+        Contact,
+        Freedom,
+        Load,
+        Scene,
+    )
     from heuncli.kernel.selection import jacobian_row, order_all, select_independent_rows
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import balance
@@ -189,7 +202,59 @@ def take_holding(scene: cython.pointer[Scene], holding: cython.p_double, at: cyt
     if changed:  # multipliers are found for the rows that carry; of the others they are 0
         for i in range(scene.closure_count):
             scene.closures[i].multiplier = 0.0
+        hold_still(scene)
     return changed
+
+
+def hold_still(scene: cython.pointer[Scene]) -> cython.void:
+    """Tell the freedoms which of them closed contacts hold.
+
+    What loads, events and conditions see of such a rate is 0: its rounding would turn branches at 0, as of abs(rate),
+    to and fro, and leave a table that begins there.
+    """
+    i: cython.Py_ssize_t
+    for i in range(scene.freedom_count):
+        scene.freedoms[i].still = 0
+    for i in range(scene.contact_count):
+        contact: cython.pointer[Contact] = cython.address(scene.contacts[i])
+        if contact.freedom >= 0 and scene.closures[contact.row].mode != APART:
+            scene.freedoms[contact.freedom].still = 1
+    while pass_on(scene):
+        pass
+
+
+def pass_on(scene: cython.pointer[Scene]) -> cython.bint:
+    """A coupling of coordinates that all stand still but one holds that one; whether one is found."""
+    i: cython.Py_ssize_t
+    last: cython.int
+    for i in range(scene.closure_count):
+        row: cython.pointer[Closure] = cython.address(scene.closures[i])
+        if row.kind == SUM and row.mode == CARRIES and row.program.count == 0:
+            last = moving_alone(scene, row)
+            if last >= 0 and not scene.freedoms[last].driven:
+                scene.freedoms[last].still = 1
+                return True
+    return False
+
+
+def moving_alone(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.int:
+    """The one freedom of a row that does not stand still; -1: none, several, or it is of more than coordinates."""
+    i: cython.Py_ssize_t
+    k: cython.int
+    of: cython.int
+    last: cython.int = -1
+    for i in range(row.part, row.part + row.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        if part.kind != TURN and part.kind != MESH:
+            return -1
+        for k in range(1 if part.kind == TURN or part.ratio_b == 0.0 else 2):
+            of = part.freedom if k == 0 else part.freedom_b
+            if scene.freedoms[of].still or of == last:
+                continue
+            if last >= 0:
+                return -1
+            last = of
+    return last
 
 
 def recover_states(scene: cython.pointer[Scene], instants: cython.pointer[Instants]) -> cython.void:

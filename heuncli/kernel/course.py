@@ -22,7 +22,7 @@ if not cython.compiled:
     from heuncli.kernel.jets import jet
     from heuncli.kernel.points import lay_states, lay_states_about_end, range_points, stand_points
     from heuncli.kernel.programs import Bounds, Jet, Programs, Span
-    from heuncli.kernel.scene import Freedom, Scene
+    from heuncli.kernel.scene import Freedom, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Run
 
@@ -36,6 +36,21 @@ def component(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cython.int:
         return -2
     of: cython.pointer[Freedom] = cython.address(scene.freedoms[scene.variables[i].freedom])
     return of.u_at if scene.variables[i].is_rate else of.q_at
+
+
+def is_still(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> cython.bint:
+    """Whether a variable is a rate that a closed contact holds at 0."""
+    variable: cython.pointer[Variable] = cython.address(scene.variables[i])
+    return not variable.is_point and variable.is_rate and scene.freedoms[variable.freedom].still
+
+
+def rest(course: cython.pointer[Course], i: cython.Py_ssize_t) -> cython.void:
+    """A variable is 0 all along."""
+    k: cython.int
+    for k in range(course.degree + 1):
+        course.value[i][k] = 0.0
+        course.rate[i][k] = 0.0
+        course.second[i][k] = 0.0
 
 
 def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cython.int) -> cython.void:
@@ -53,7 +68,9 @@ def lay_course(scene: cython.pointer[Scene], run: cython.pointer[Run], rows: cyt
         lay_states(run, rows)
     for i in range(1, scene.variable_count):
         at = component(scene, i)
-        if at >= 0:
+        if is_still(scene, i):
+            rest(course, i)
+        elif at >= 0:
             of_rows(run.y[at], run.dense, rows, at, course.value[i])
             differentiate(course.value[i], course.rate[i], rows, run.h)
             differentiate(course.rate[i], course.second[i], rows - 1, run.h)
@@ -78,6 +95,9 @@ def lay_window(scene: cython.pointer[Scene], method: cython.pointer[Method], run
         lay_states_about_end(scene, method, run, half)
     for i in range(1, scene.variable_count):
         at = component(scene, i)
+        if is_still(scene, i):
+            rest(course, i)
+            continue
         if at < 0:
             continue
         u = last[at]

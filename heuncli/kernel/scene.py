@@ -101,6 +101,7 @@ class Freedom(Record):
     D: float  # 1 / (s . I s); zero where it is driven or moves nothing
     q: float
     u: float
+    still: int  # 1: a closed contact holds it, so that its rate is 0, and not what rounding leaves of that
     udot: float  # prescribed, or found
     drive: float  # load of the drive along it
 
@@ -239,6 +240,7 @@ class Contact(Record):
     row: int
     sense: int  # 1: an upper limit, a rope; -1: a lower limit; 0: a latch
     opens: int  # 1 + its place among those that open and close; 0: a rope that ends the run where it would push
+    freedom: int  # which it limits or holds; -1: no single one
     held_at: int  # of a latch 1 + where, behind these, it is told at which length it holds; 0: of others
 
     start: float  # the margin at the start of a step, and its rate

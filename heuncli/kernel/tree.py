@@ -96,7 +96,7 @@ def coordinates(scene: cython.pointer[Scene], t: cython.double, y: cython.p_doub
         variable: cython.pointer[Variable] = cython.address(scene.variables[i])
         if not variable.is_point:
             of: cython.pointer[Freedom] = cython.address(scene.freedoms[variable.freedom])
-            scene.programs.variables[i] = of.u if variable.is_rate else of.q
+            scene.programs.variables[i] = (0.0 if of.still else of.u) if variable.is_rate else of.q
 
 
 def kinematics(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double) -> cython.void:

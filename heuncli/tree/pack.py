@@ -390,14 +390,15 @@ class _Builder:
         """The row of one limit of a stop, or of a latch."""
         joint, row = self.mechanism.joints[stop.joint], len(self.row_joint)
         self.contacts.append(Contact(stop.name, False, stop.joint, row, sense, stop.restitution))
-        self.one_sided.append(ContactRow(row, sense, len(self.contacts), held_at))
+        own = (stop.joint, stop.quantity)
+        limited = next((i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == own), -1)
+        self.one_sided.append(ContactRow(row, sense, len(self.contacts), limited, held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
         elif stop.quantity == "travel":
             self._row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
-            turn = next(i for i, f in enumerate(self.freedoms) if (f.joint, f.quantity) == (stop.joint, "angle"))
-            self._row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=turn, weight=self.size)
+            self._row(stop.joint, kernel.TURN, length=limit, e=joint.axis, freedom=limited, weight=self.size)
 
     def _row(
         self,

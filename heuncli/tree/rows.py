@@ -166,6 +166,7 @@ class ContactRow:
     row: int
     sense: int
     opens: int
+    freedom: int = -1
     held_at: int = 0
 
 

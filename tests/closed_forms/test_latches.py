@@ -187,3 +187,30 @@ def test_at_rest_it_holds_what_it_holds_at_the_start() -> None:
         found = solved(f"{CART.replace('speed: 1', 'speed: 0')}{spring}{latch}analysis: {{type: rest}}\n")
         near(travel(found)[0], at, 1.0, 1e-9)
         near(found.stops["pin"]["force"][0], load, 1.0, 1e-8)
+
+
+@pytest.mark.parametrize("held", ["hinge", "wheel"])
+def test_a_motor_stalls_against_what_is_held(held: str) -> None:
+    """Its curve begins at rest, where rounding of the held speed must not leave it; also through a gear of -2.
+
+    Both bodies hang together on one axis with no load from outside: caught, they are at rest.
+    """
+    found = solved(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  arm: {{mass: 1, center: [0.1, 0, 0], inertia: [0.1, 0.1, 0.2], points: {{o: [0, 0, 0], p: [0.3, 0.1, 0]}}}}
+  flap: {{mass: 1, center: [0, 0.1, 0], inertia: [0.3, 0.3, 0.5], points: {{o: [0, 0, 0]}}}}
+  rotor: {{mass: 1, center: [0.3, 0.1, 0], inertia: [0.1, 0.1, 0.1], points: {{o: [0.3, 0.1, 0]}}}}
+joints:
+  base: {{type: pin, from: ground.O, to: arm.o, axis: [0, 0, 1]}}
+  hinge: {{type: pin, from: arm.o, to: flap.o, axis: [0, 0, 1]}}
+  wheel: {{type: pin, from: arm.p, to: rotor.o, axis: [0, 0, 1]}}
+couplings: {{gear: {{type: ratio, of: [wheel, hinge], factors: [1, -2]}}}}
+tables: {{curve: {{x: [0, 20, 60], y: [35, 34, 10]}}}}
+forces: {{motor: {{type: motor, joint: hinge, curve: curve}}}}
+latches: {{click: {{joint: {held}, angle: 0.5}}}}
+analysis: {{duration: 1, samples: 3}}
+""")
+    near(found.coordinates["base"]["rate"][1:], [0.0, 0.0], 1.0, 1e-9)
+    near(found.stops["click"]["moment"][1:], np.full(2, -35.0 if held == "hinge" else -17.5), 35.0, 1e-9)
