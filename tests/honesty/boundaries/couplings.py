@@ -127,7 +127,7 @@ analysis: {duration: 1, samples: 2}
 """
 
 
-def runs(text: str) -> str:
+def roped(text: str) -> str:
     """What a scene with a rope ends as: refused, warned of, or fine."""
     try:
         results = solve(load("rope.yaml", text=text)).results
@@ -138,12 +138,12 @@ def runs(text: str) -> str:
 
 def swung(angle: float) -> str:
     """A rope that leaves its sheave's plane by an angle: the way across the axis is 3 m."""
-    return runs(JIB.replace("SIDE", repr(3.0 * math.tan(angle))))
+    return roped(JIB.replace("SIDE", repr(3.0 * math.tan(angle))))
 
 
 def lifted(angle: float) -> str:
     """The end of a rope is lifted until its strand rises by an angle, beyond where it lies on the sheave."""
-    return runs(ROUND.replace("HEIGHT", repr((0.1 + math.sin(angle)) / math.cos(angle))))
+    return roped(ROUND.replace("HEIGHT", repr((0.1 + math.sin(angle)) / math.cos(angle))))
 
 
 ROPES = Part(
@@ -151,7 +151,7 @@ ROPES = Part(
     rows=(
         Row("FLEET_ANGLE", swung, "warned of", "refused: rope-off-sheave"),
         Row("FLEET_SEEN", swung, "fine", "warned of"),
-        Row("ASKEW", lambda x: runs(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
+        Row("ASKEW", lambda x: roped(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
 )
