@@ -19,7 +19,7 @@ EVEN = 0.1  # of |r'|: by how much it may change in a stretch of which bounds ar
 HALVED = 40  # times at most
 
 
-class DrawnPath(Protocol):
+class RolledPath(Protocol):
     """What is asked of a path (paths.py) beside which a roller runs."""
 
     @property
@@ -52,7 +52,7 @@ def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tupl
     return r + R * left(N, slope), along * slope, along * bend + along1 * slope
 
 
-def bounds(path: DrawnPath) -> tuple[float, float]:
+def bounds(path: RolledPath) -> tuple[float, float]:
     """Bounds of |p'| and |p''| over all of the path, by stretches in which |r'| is nearly even."""
     middle, half = stretches(path)
     _, slope, bend, twist = (np.sqrt(np.sum(x * x, axis=-1)) for x in path.track(middle))
@@ -63,7 +63,7 @@ def bounds(path: DrawnPath) -> tuple[float, float]:
     return float(np.max((1.0 + k) * high)), float(np.max((1.0 + k) * B + k1 * high))
 
 
-def stretches(path: DrawnPath) -> tuple[Array, Array]:
+def stretches(path: RolledPath) -> tuple[Array, Array]:
     """Middles and half lengths of stretches that cover the path, each within a piece."""
     middle, half = 0.5 * (path.knots[1:] + path.knots[:-1]), 0.5 * np.diff(path.knots)
     done: list[tuple[Array, Array]] = []
@@ -80,7 +80,7 @@ def stretches(path: DrawnPath) -> tuple[Array, Array]:
     return np.concatenate([m for m, _ in done]), np.concatenate([h for _, h in done])
 
 
-def tightest(path: DrawnPath) -> tuple[float, float]:
+def tightest(path: RolledPath) -> tuple[float, float]:
     """Where κ R is largest on the path, and how large: at an end of a piece, or where k' = 0, of degree 5 in it."""
     s = np.concatenate([path.knots, *(turns(path, i) for i in range(len(path.coefficients)))])
     _, slope, bend, _ = path.track(s)
@@ -89,7 +89,7 @@ def tightest(path: DrawnPath) -> tuple[float, float]:
     return float(s[i]), float(k[i])
 
 
-def turns(path: DrawnPath, i: int) -> Array:
+def turns(path: RolledPath, i: int) -> Array:
     """The parameters within a piece at which the path's curvature is extreme."""
     length = float(path.knots[i + 1] - path.knots[i])
     c = path.coefficients[i] * (length ** np.arange(4.0))[:, None]  # over 0 to 1
@@ -106,7 +106,7 @@ def turns(path: DrawnPath, i: int) -> Array:
     return np.asarray(path.knots[i] + length * inside)
 
 
-def leaves_plane(path: DrawnPath, normal: Sequence[float]) -> bool:
+def leaves_plane(path: RolledPath, normal: Sequence[float]) -> bool:
     """Whether a path goes on anywhere out of the plane across a normal (3,), of any length."""
     N = np.asarray(normal, dtype=float)
     steps = np.diff(path.knots)[:, None] ** np.arange(3.0) * np.array([1.0, 2.0, 3.0])
