@@ -224,10 +224,11 @@ class Resolver:
         )
 
     def path(self, joint: f.CurveJoint) -> Path:
-        """What the point of a curve runs along."""
-        from heuncli.expressions.paths import path_of  # with NumPy, which a spec without one has no need of
+        """What the point of a curve runs along, or the centre of its roller beside."""
+        from heuncli.expressions.paths import path_beside, path_of  # with NumPy, which a spec without one needs not
 
-        return path_of((joint.x, joint.y, joint.z))
+        found = path_of((joint.x, joint.y, joint.z))
+        return found if joint.radius is None else path_beside(found, joint.radius, joint.normal or (0.0, 0.0, 1.0))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
