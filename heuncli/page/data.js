@@ -49,6 +49,7 @@ export function readData(text) {
       surface.faces = data.scene.topologies[surface.faces];
     }
   }
+  for (const strand of data.scene.strands) strand.line = places(strand.line);
   data.rows = new Map();
   const blocks = [
     ...data.blocks.map((b) => [b, count]),

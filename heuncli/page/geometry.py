@@ -59,6 +59,10 @@ def scene_of(machine: Machine, spec: Spec, results: Results, poses: Poses) -> di
             {"name": x.name, "kind": x.kind, "a": number[x.a], "p": _triple(x.p), "b": number[x.b], "q": _triple(x.q)}
             for x in machine.lines
         ],
+        "strands": [
+            {"body": number[body], "line": drawn(line)}
+            for body, lines in (*machine.strands.items(), (GROUND, machine.paths)) for line in lines
+        ],
         "ground": [{"name": name, "at": _triple(point)} for name, point in machine.grounded.items()],
         "gravity": _triple(np.array(spec.gravity)),
         "normal": _normal(machine, poses),
@@ -102,6 +106,7 @@ def _reach(machine: Machine, poses: Poses) -> dict[str, Any]:
     """Centre and half edges of a box that holds all of the machine at all frames, and the radius of a ball [m]."""
     some = np.linspace(0, len(poses.times) - 1, min(len(poses.times), REACH_FRAMES)).round().astype(int)
     clouds = [point[None] for point in machine.grounded.values()]
+    clouds += [*machine.paths, *machine.strands.get(GROUND, ())]
     clouds += [joint.p[None] for joint in machine.joints if joint.a == GROUND]
     clouds += [joint.q[None] for joint in machine.joints if joint.b == GROUND]
     for body in machine.bodies:

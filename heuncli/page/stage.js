@@ -7,7 +7,7 @@ import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { words } from "./strokes.js";
-import { drawCorner, drawGroundPoint, drawJoint, drawLine } from "./symbols.js";
+import { drawCorner, drawGroundPoint, drawJoint, drawLine, drawStrand } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 
 const MANY = 40; // joints
@@ -54,6 +54,7 @@ export function drawMachine(canvas, data, view, shown, colours) {
   const painter = new Painter(pen);
   paintBodies(painter, scene, poses, view, colours);
   painter.paint(shown.look);
+  for (const strand of scene.strands) drawStrand(pen, view, poses, strand, colours);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
   const small = scene.joints.length > MANY;
   for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);

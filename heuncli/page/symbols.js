@@ -136,6 +136,8 @@ export function drawJoint(pen, view, poses, joint, colours, small) {
   } else if (joint.kind in SLIDING) {
     polyline(pen, [from, at], colours.faint, 1, [5, 4]);
     SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
+  } else if (joint.kind === "curve") {
+    ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8); // its path is drawn as a line
   } else {
     drawRod(pen, joint, from, at, colours);
   }
@@ -182,6 +184,13 @@ export function drawLine(pen, view, poses, line, colours) {
     polyline(pen, [at(0.45, 5), at(0.45, -5)], colours.ink, 1.5);
   }
   for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
+}
+
+/** A strand of a belt, or a path along which a point runs: a line that stands on a body or the ground. */
+export function drawStrand(pen, view, poses, { body, line }, colours) {
+  const ends = [];
+  for (let i = 0; i < line.length; i += 3) ends.push(view.project(stands(poses, body, line.subarray(i, i + 3))));
+  polyline(pen, ends, colours.ink, 1.5);
 }
 
 /** The axes of the world, and gravity beside them. */

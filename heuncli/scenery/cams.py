@@ -20,6 +20,7 @@ from heuncli.spec.models import Spec
 
 MOST = 400  # places of a line
 ROUND = 36  # of a roller
+OVER = 1.5  # of what the flank comes to: how far a flat face is drawn
 
 
 def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
@@ -42,9 +43,9 @@ def cam_outlines(spec: Spec, body: str) -> Iterator[Array]:
 
 
 def face(own: Flank, at: tuple[float, float, float], along: Array) -> Array:
-    """The part of a flat face that the flank comes to, (2, 3), the same to both sides of its point; along: of it."""
+    """A flat face, (2, 3), somewhat longer than what the flank comes to, the same to both sides; along: of it."""
     off = own.places - own.centres
-    reach = float(np.sqrt(np.max(np.sum(off * off, axis=1)) / (along @ along)))
+    reach = OVER * float(np.sqrt(np.max(np.sum(off * off, axis=1)) / (along @ along)))
     return np.asarray(np.array(at) + np.outer([-reach, reach], along))
 
 

@@ -132,6 +132,20 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
             assert np.all(np.abs(stand - center) <= half * (1 + 1e-9) + 1e-9 * scene["radius"])
 
 
+def test_a_belts_strands_touch_both_pulleys() -> None:
+    """A strand is as far from each axle as the belt's radius there, and stands on the ground, which carries both."""
+    study, page = shown(SPECS / "belt_drive.yaml")
+    (belt,) = (own for own in study.spec.couplings.values() if own.type == "belt")
+    strands = data_of(page)["scene"]["strands"]
+    assert [strand["body"] for strand in strands] == [-1, -1]
+    for strand in strands:
+        begin, end = places(strand["line"]).reshape(-1, 3)[:, :2]
+        way = (end - begin) / np.linalg.norm(end - begin)
+        for term, radius in zip(belt.terms, belt.radii, strict=True):
+            x, y = np.array(study.spec.joints[term.joint].p)[:2] - begin
+            assert abs(abs(way[0] * y - way[1] * x) - radius) < PIXEL
+
+
 @ANY
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
