@@ -181,7 +181,9 @@ def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
     for path, value, by_rate, _ in prescribed(draft):
         what = "drive" if path[0] == "drives" else path[-1]
         if math.isnan(value.value(0.0)):
-            yield Violation(path, f"the {what} has no value at t = 0", "look at the domains of its functions and tables")
+            yield Violation(
+                path, f"the {what} has no value at t = 0", "look at the domains of its functions and tables"
+            )
             continue
         for _, t, before, after in jumps(value, duration)[:1] if not by_rate else ():
             message = f"the {what} jumps from {before:g} to {after:g} at t = {t:g} s"

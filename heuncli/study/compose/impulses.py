@@ -35,7 +35,9 @@ UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all bl
 STRUCK = frozenset({"foundation", "joints", "sections"})
 WRENCH = {"N·s": ("force", *SECTION_FORCES), "N·m·s": ("moment", *SECTION_MOMENTS)}
 OF_COUPLINGS = {
-    struck: tuple({row.path.rpartition(".")[2] for row in ROWS if row.path.startswith("couplings.") and unit in row.units})
+    struck: tuple(
+        {row.path.rpartition(".")[2] for row in ROWS if row.path.startswith("couplings.") and unit in row.units}
+    )
     for unit, struck in AT_A_BLOW.items()
 }
 KINDS = (  # of estimated errors, the block they are of, and its numbers by unit; a drive's unit is its joint's
