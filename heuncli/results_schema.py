@@ -181,6 +181,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
     *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
+    *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
         scalar("tension", "N")),

@@ -210,6 +210,27 @@ def test_a_blow_on_one_gear_turns_both_at_once() -> None:
     near(struck["joints"]["w"]["force"], -np.asarray(on), push, ROUNDING)
 
 
+@pytest.mark.parametrize("order", [["p", "n"], ["n", "p"]])
+def test_a_blow_through_a_screw(order: list[str]) -> None:
+    """On the nut it meets its mass and 0.02 (2 pi / lead)^2, on the spindle 0.02 and 20 (lead / 2 pi)^2."""
+    by = 0.01 / math.tau
+    for blow, nut in (
+        ({"on": "nut.c", "vector": [0, 0, -3]}, -3 / (20 + 0.02 / by**2)),
+        ({"body": "spindle", "couple": [0, 0, 3]}, 3 * by / (0.02 + 20 * by**2)),
+    ):
+        scene = screw(of=order) | {"impulses": {"blow": blow}, "analysis": {"type": "impulse"}}
+        (struck,) = solved(scene).impulses
+        near(struck["bodies"]["nut"]["center_velocity_jump"], (0, 0, nut), abs(nut), ROUNDING)
+        near(struck["bodies"]["spindle"]["angular_velocity_jump"], (0, 0, nut / by), abs(nut / by), ROUNDING)
+        thrust = 20 * nut + (3 if "vector" in blow else 0)  # what the thread gives the nut
+        on = struck["couplings"]["thread"]["on"]
+        near(on["nut"]["force"], (0, 0, thrust), 3, ROUNDING)
+        near(on["spindle"]["force"], (0, 0, -thrust), 3, ROUNDING)
+        near(on["nut"]["moment"], (0, 0, thrust * by), 3, ROUNDING)
+        near(struck["joints"]["p"]["force"], (0, 0, thrust), 3, ROUNDING)
+        near(struck["joints"]["n"]["moment"][2], -thrust * by, 3, ROUNDING)
+
+
 def test_modes_of_geared_shafts() -> None:
     """A spring of 50 N m/rad about the wheel's axis swings it with nine times the pinion's inertia."""
     scene = pair(teeth=[20, 60])

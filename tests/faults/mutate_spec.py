@@ -9,6 +9,7 @@ from functools import cache
 from random import Random
 from typing import Any
 
+from heuncli.spec.format_couplings import COUPLINGS
 from tests.faults import sources
 from tests.faults.random_expressions import random_expression
 from tests.faults.sources import Spot, Tree
@@ -42,6 +43,7 @@ KINDS = {
     "fixed"),
     "forces": ("force", "couple", "torque", "actuator", "spring", "damper", "friction", "distributed", "turn_spring",
     "motor", "bushing"),
+    "couplings": tuple(COUPLINGS),
     "shapes": ("rod", "cylinder", "cone", "box", "sphere", "point", "mesh", "ball"),
     "analysis": ("motion", "state", "impulse", "rest", "modes"),
 }  # fmt: skip
@@ -265,7 +267,7 @@ def count(random: Random, tree: Tree) -> None:
 
 
 def kind(random: Random, tree: Tree) -> None:
-    """Another type of a joint, force, shape or analysis."""
+    """Another type of a joint, force, coupling, shape or analysis."""
     if not isinstance(tree, dict):
         return
     of = random.choice(list(KINDS))

@@ -175,19 +175,3 @@ def test_a_bushing_at_half_a_turn_is_told_whatever_fails_there() -> None:
     with pytest.raises(SolveError) as error:
         solved(scene)
     assert [problem.code for problem in error.value.problems] == ["bushing-turned"]
-
-
-def test_a_belt_that_is_struck() -> None:
-    """Its impulse in the strands is that of the blow alone, whatever they pull with before; each has a half."""
-    blows = []
-    for pretension in (10.0, 500.0):
-        scene = pair()
-        scene["couplings"] = {"belt": {"type": "belt", "of": ["p", "w"], "radii": [0.1, 0.2], "pretension": pretension}}
-        scene["impulses"] = {"blow": {"on": "pinion.c", "couple": [0, 0, 3.0]}}
-        (blow,) = solved({**scene, "analysis": {"type": "impulse"}}).impulses
-        own = blow["couplings"]["belt"]
-        near(own["tight"], abs(own["force"]) / 2, 1.0)
-        near(own["slack"], -abs(own["force"]) / 2, 1.0)
-        blows.append(own["force"])
-    near(blows[0], blows[1], 1.0)
-    near(abs(blows[0]), 3.0 * (0.2 / 4) / (0.02 + 0.2 / 4) / 0.1, 1.0)  # the wheel's inertia over the square of 2

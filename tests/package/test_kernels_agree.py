@@ -1,4 +1,4 @@
-"""The compiled kernel and the plain one give the same bits: trees, closed chains, tables, drives."""
+"""The compiled kernel and the plain one give the same bits: trees, closed chains, tables, drives, machine elements."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 
 from heuncli.kernel.form import KERNEL
+from tests.oracle.values import to_yaml
+from tests.shared.coupled_scenes import ELEMENTS, coupled_scene
 from tests.shared.event_scenes import EVENTS
 from tests.shared.folders import SPECS
 from tests.shared.kernel_answers import Asked, here, plain_kernel
@@ -24,8 +26,6 @@ SCENES = {
     "drawer": ("analysis.duration=0.1", "analysis.samples=4"),
     "cart": ("analysis.duration=0.1", "analysis.samples=4"),
 }
-
-
 needs_both = pytest.mark.skipif(KERNEL == "pure", reason="there is no compiled kernel to compare with")
 
 
@@ -71,6 +71,19 @@ def test_same_bits_of_the_one_linear_map(scene: str, plain: Asked) -> None:
     compiled, told = (kernel("linear_map", scene) for kernel in (here, plain))
     assert compiled == told
     assert all(np.any(told[name]) for name in ("jacobian", "carried"))
+
+
+@needs_both
+@pytest.mark.parametrize("part", range(3))
+def test_same_bits_of_machine_elements(part: int, plain: Asked) -> None:
+    """A third of their kinds in a random scene: a step, a blow, a step, and the parts of the linear map."""
+    scene = coupled_scene(3, tuple(ELEMENTS)[part::3])
+    scene["impulses"]["blow"]["time"] = 0.0005
+    text = to_yaml({**scene, "analysis": {"times": [0, 0.001], "tolerance": 1e-3}})
+    compiled, told = (kernel("results", text, []) for kernel in (here, plain))
+    assert (compiled["work"].pop("kernel"), told["work"].pop("kernel")) == ("compiled", "pure")
+    assert compiled == told
+    assert here("linear_map", "elements", text) == plain("linear_map", "elements", text)
 
 
 @needs_both

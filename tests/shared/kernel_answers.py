@@ -40,9 +40,9 @@ def results(text: str, settings: list[str]) -> Any:
     return read
 
 
-def linear_map(scene: str) -> Any:
-    """Its parts at the start of a spec, for loads and multipliers of any size."""
-    setup = set_up(load(str(SPECS / f"{scene}.yaml")))
+def linear_map(scene: str, text: str | None = None) -> Any:
+    """Its parts at the start of a spec, or of a scene as text, for loads and multipliers of any size."""
+    setup = set_up(load(str(SPECS / f"{scene}.yaml"), text))
     layout, runner = setup.scene.layout, setup.runner
     found = runner.recovered(np.zeros(2), np.array([layout.y0, layout.y0]))
     at = runner.workspace, found.times, found.states

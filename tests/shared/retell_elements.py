@@ -14,9 +14,13 @@ from tests.oracle.turns import Array
 
 Tree: TypeAlias = Any  # mappings, lists, numbers and words
 Tell = Callable[[Any, dict[str, tuple[int, int, int]]], None]
-LENGTH, FORCE, MOMENT, RATE = (0, 1, 0), (1, 1, -2), (1, 2, -2), (0, 0, -1)
+LENGTH, SPEED, FORCE, MOMENT, RATE = (0, 1, 0), (0, 1, -1), (1, 1, -2), (1, 2, -2), (0, 0, -1)
 COUPLING = {"at": LENGTH, "lead": LENGTH, "radii": LENGTH, "radius": LENGTH, "pretension": FORCE, "length": LENGTH}
-OWN_RATE = re.compile(r"(?<![\w.])rate(?!\w)")
+# laws of what a load acts between, by its own names: key, what they stand for, what it is
+OWN_LAWS = {
+    "motor": ("curve", {"rate": RATE}, MOMENT), "spring": ("force", {"length": LENGTH, "rate": SPEED}, FORCE),
+}  # fmt: skip
+OWN = re.compile(r"(?<![\w.])(rate|length)(?![\w.])")
 
 
 class NotTold(Exception):
@@ -55,6 +59,8 @@ def turned_path(tree: Tree, name: str, joint: dict[str, Any], Q: Array) -> None:
     if not all(isinstance(table, dict) and table.get("x") == tables[0]["x"] and "y" in table for table in tables):
         raise NotTold("a path of other tables")
     way = Q @ np.array([table["y"] for table in tables], dtype=float)
+    if "normal" in joint and np.linalg.det(Q) < 0.0:  # the left side is the right one in a mirror
+        joint["normal"] = [-x for x in joint["normal"]]
     for axis, table, y in zip("xyz", tables, way, strict=True):
         own = f"{name}_{axis}_turned"
         tree["tables"][own] = {**table, "y": y.tolist()}
@@ -62,7 +68,7 @@ def turned_path(tree: Tree, name: str, joint: dict[str, Any], Q: Array) -> None:
 
 
 def elements_in_units(tree: Tree, tell: Tell, mass: float, length: float, time: float) -> None:
-    """Couplings, wheels, paths, motors."""
+    """Couplings, wheels, paths, loads with laws of their own."""
     joints = tree.get("joints") or {}
     for entry in (tree.get("couplings") or {}).values():
         tell(entry, COUPLING)
@@ -84,11 +90,25 @@ def elements_in_units(tree: Tree, tell: Tell, mass: float, length: float, time: 
         if joint.get("type") == "curve":
             for axis in "xyz":
                 table_in_units(tree, joint.get(axis), length, length)
+            tell(joint, {"radius": LENGTH})
     for load in (tree.get("forces") or {}).values():
         if load.get("type") == "motor":
-            told = OWN_RATE.sub(f"(rate*{time!r})", str(load["curve"]))
-            load["curve"] = f"({told})*{mass * length**2 / time**2!r}"
             tell(load, {"limit": MOMENT})
+        own_law_in_units(load, mass, length, time)
+
+
+def own_law_in_units(load: dict[str, Any], mass: float, length: float, time: float) -> None:
+    """The law of a motor by its rate, of a spring by its length and rate."""
+    key, names, is_a = OWN_LAWS.get(str(load.get("type")), ("", {}, FORCE))
+    if key not in load:
+        return
+
+    def factor(powers: tuple[int, int, int]) -> float:
+        m, l, t = powers
+        return mass**m * length**l * time**t
+
+    told = OWN.sub(lambda found: f"({found[0]}/{factor(names[found[0]])!r})", str(load[key]))
+    load[key] = f"({told})*{factor(is_a)!r}"
 
 
 def table_in_units(tree: Tree, name: Any, x: float, y: float) -> None:

@@ -95,7 +95,8 @@ def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Movin
             continue
         message = f"at t = {t:.9g} s the point of joint {joint.name} runs off its path, which covers travel from "
         message += f"{path.first:.9g} to {path.last:.9g} m"
-        hint = "a longer path, or end the run before: until: " + f"{joint.name}.travel > {path.last:.6g}"
+        end = f"> {path.last:.6g}" if s > 0.5 * (path.first + path.last) else f"< {path.first:.6g}"
+        hint = f"a longer path, or end the run before: until: {joint.name}.travel {end}"
         problems.append(Problem("path-ends", message, None, hint, f"joints.{joint.name}"))
     return problems
 

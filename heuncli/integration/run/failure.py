@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, lifts_left, without_value
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, lifts_left, paths_left, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
@@ -27,20 +27,25 @@ def failure(progress: Progress, code: int) -> SolveError:
         return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
     name, message, hint = TROUBLE[code]
     if name == "closure-lost":
-        if known := lifts_ended(progress) or turned_bushings(progress):
+        if known := ways_ended(progress) or turned_bushings(progress):
             return SolveError(*known)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
     return without_acceleration(progress, name, message, hint)
 
 
-def lifts_ended(progress: Progress) -> list[Problem]:
-    """The problems of cams that have turned off their lifts there, for which no closed chain has to be looked at."""
-    t, scene = progress.t, progress.scene
-    if not any(coupling.given.type == "cam" for coupling in scene.layout.mechanism.couplings):
+def ways_ended(progress: Progress) -> list[Problem]:
+    """The problems of points that have run off their paths there, and of cams that have turned off their lifts.
+
+    No closed chain has to be looked at for them, though one that hangs on them is lost with them.
+    """
+    t, scene, mechanism = progress.t, progress.scene, progress.scene.layout.mechanism
+    on_cams = any(coupling.given.type == "cam" for coupling in mechanism.couplings)
+    if not on_cams and all(joint.path is None for joint in mechanism.joints):
         return []
     there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
-    return lifts_left(scene.layout.mechanism, t, progress.last * 2.0**-FARTHEST, there)
+    ended = mechanism, t, progress.last * 2.0**-FARTHEST, there
+    return paths_left(*ended) + lifts_left(*ended)
 
 
 def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:
