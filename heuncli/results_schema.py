@@ -415,8 +415,11 @@ def is_share(row: Quantity) -> bool:
 def kind_of_error(kind: str, name: str, number: str) -> str:
     """Of which estimate (of `accuracy.estimate`) the error of a quantity is, by the words of its path.
 
-    Shares by cause have their own: they may be larger than what they add up to, and err by more.
+    Shares by cause have their own: they may be larger than what they add up to, and err by more. Numbers of
+    a blow are of the kinds that they have at an instant.
     """
+    if kind == BLOWS:
+        kind, _, name = name.partition(".")[2].partition(".")
     whole, by_cause, _ = f".{name}".rpartition(f".{SHARES}.")
     if by_cause and kind in SHARED | {"couplings"}:
         return f"{kind_of_error(kind, whole.removeprefix('.'), number.removeprefix('direct_'))} {BY_CAUSE}"

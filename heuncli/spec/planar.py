@@ -7,7 +7,10 @@ from typing import Any
 from heuncli.joint_kinds import TYPES
 from heuncli.spec.names import mapping
 
-BLOCKS = ("gravity", "ground", "bodies", "joints", "forces", "impulses", "sections", "foundation")
+BLOCKS = (
+    "gravity", "ground", "bodies", "joints", "couplings", "rolling", "forces", "impulses", "sections", "foundation",
+)  # fmt: skip
+OF_ENTRIES = ("shapes", "through")  # lists whose members hold vectors
 VECTORS = frozenset({  # keys of vectors that lie in the plane; named points are found under `points`
     "gravity", "center", "position", "from", "to", "at", "velocity", "vector", "to_vector", "axis", "to_axis", "normal",
     "first_axis", "about",
@@ -31,7 +34,7 @@ def completed(value: Any, key: str) -> Any:
     if type(value) is list:
         if len(value) == 2 and key in VECTORS:
             return [*value, 0]
-        return [completed(member, "") for member in value] if key == "shapes" else value
+        return [completed(member, "") for member in value] if key in OF_ENTRIES else value
     if type(value) is not dict or key in NOT_IN_PLANE:
         return value
     couple = value.get("type") == "couple"

@@ -359,6 +359,8 @@ joints:
      "couplings.g.at unknown-body, couplings.g.of.1 coupled-joint"),
     ("couplings.g: {type: gear, of: [shaft, shaft], at: a.none}",
      "couplings.g.at unknown-point, couplings.g.of.1 coupled-joint"),
+    ("couplings.r: {type: rope, through: [ground.O, a.q], length: 1 + shaft.angle}", "couplings.r.length rope-bounds"),
+    ("couplings.r: {type: rope, through: [ground.O, a.q], length: sqrt(t - 1)}", "couplings.r.length drive-jumps"),
     # the rest
     ("analysis: {duration: 0}", "analysis.duration not-positive"),
     ("analysis: {duration: 1, samples: 1}", "analysis.samples times"),

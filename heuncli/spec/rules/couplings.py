@@ -173,6 +173,9 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
             continue
         path = ("couplings", name)
         length = None if rope.length is None else rope.length.constant
+        if rope.length is not None and rope.length.uses:
+            joint, coordinate = rope.length.uses[0]
+            yield Violation((*path, "length"), f"a rope's length follows time alone, not {joint}.{coordinate}", "use t")
         if length is not None and not length > 0.0:
             yield Violation((*path, "length"), f"a rope of length {length:g} m", "leave it out: as assembled")
         if rope.length is not None and any(place.slip == "none" for place in rope.through):

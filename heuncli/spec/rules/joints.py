@@ -7,8 +7,10 @@ from collections.abc import Iterator
 
 from heuncli import tolerances
 from heuncli.expressions.discontinuities import first_not_positive, jumps
+from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import RATES, TYPES, named
 from heuncli.spec import format as f
+from heuncli.spec import format_couplings as fc
 from heuncli.spec import format_elastic as fe
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.rules.registry import DraftDocument, Path_, Violation, rule
@@ -163,29 +165,41 @@ def drive_contradicts(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(("joints", joint_name, "initial", key), message, "leave it out: the drive sets it")
 
 
+def prescribed(draft: DraftDocument) -> Iterator[tuple[Path_, Expression, bool, str]]:
+    """What drives and ropes prescribe in time: path, value, whether it is a rate, and what it is of."""
+    for name, joint, driven in drives(draft):
+        yield ("drives", name, driven.key), driven.value, driven.by_rate, f"rod {joint}"
+    for name, rope in draft.document.couplings.items():
+        if isinstance(rope, fc.RopeEntry) and rope.length is not None and not rope.length.uses:
+            yield ("couplings", name, "length"), rope.length, False, f"rope {name}"
+
+
 @rule("drive-jumps")
 def drive_jumps(draft: DraftDocument) -> Iterator[Violation]:
-    """A driven coordinate does not jump, its rate may; it is a number all along the run."""
+    """A driven coordinate or length does not jump, its rate may; it is a number all along the run."""
     duration = span_of(draft.document.analysis)
-    for name, _, driven in drives(draft):
-        path, value = ("drives", name, driven.key), driven.value
+    for path, value, by_rate, _ in prescribed(draft):
+        what = "drive" if path[0] == "drives" else path[-1]
         if math.isnan(value.value(0.0)):
-            yield Violation(path, "the drive has no value at t = 0", "look at the domains of its functions and tables")
+            yield Violation(
+                path, f"the {what} has no value at t = 0", "look at the domains of its functions and tables"
+            )
             continue
-        for _, t, before, after in jumps(value, duration)[:1] if not driven.by_rate else ():
-            message = f"the drive jumps from {before:g} to {after:g} at t = {t:g} s"
+        for _, t, before, after in jumps(value, duration)[:1] if not by_rate else ():
+            message = f"the {what} jumps from {before:g} to {after:g} at t = {t:g} s"
             yield Violation(path, message, "a body cannot jump: let the value run over a short time")
 
 
 @rule("drive-length")
 def drive_length(draft: DraftDocument) -> Iterator[Violation]:
-    """A driven rod keeps a positive length: at length 0 its direction is undefined."""
+    """A driven rod or rope keeps a positive length: at length 0 its direction is undefined."""
     duration = span_of(draft.document.analysis)
-    for name, _, driven in drives(draft):
-        value = driven.value
-        if driven.key != "length" or draft.document.drives[name].zero == "assembled":
+    for path, value, _, what in prescribed(draft):
+        if path[-1] != "length" or (path[0] == "couplings" and value.constant is not None):
+            continue  # a length that stays is judged with the rope's other numbers
+        if path[0] == "drives" and draft.document.drives[str(path[1])].zero == "assembled":
             continue
         gone = first_not_positive(value, duration)
         if gone is not None:
-            message = f"the rod {draft.document.drives[name].joint} has no length left at t = {gone:.4g} s"
-            yield Violation(("drives", name, "length"), message, "let the run end before, or the length stay above 0")
+            message = f"the {what} has no length left at t = {gone:.4g} s"
+            yield Violation(path, message, "let the run end before, or the length stay above 0")

@@ -25,7 +25,7 @@ from heuncli.mechanism.model import Mechanism
 from heuncli.records import fields, record, replace
 from heuncli.response import Columns
 from heuncli.results import Array, Block, CertainSum
-from heuncli.results_schema import BLOWS, BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
+from heuncli.results_schema import AT_A_BLOW, BLOWS, BY_CAUSE, ROWS, SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery, certain_sums
 from heuncli.study.model.setup import Setup
@@ -33,11 +33,17 @@ from heuncli.study.solve.history import History
 
 UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
 STRUCK = frozenset({"foundation", "joints", "sections"})
-UNITS = {"N": "N·s", "N·m": "N·m·s"}
 WRENCH = {"N·s": ("force", *SECTION_FORCES), "N·m·s": ("moment", *SECTION_MOMENTS)}
+OF_COUPLINGS = {
+    struck: tuple(
+        {row.path.rpartition(".")[2] for row in ROWS if row.path.startswith("couplings.") and unit in row.units}
+    )
+    for unit, struck in AT_A_BLOW.items()
+}
 KINDS = (  # of estimated errors, the block they are of, and its numbers by unit; a drive's unit is its joint's
     ("foundation", "foundation", WRENCH),
     ("reactions", "joints", WRENCH),
+    ("reactions", "couplings", OF_COUPLINGS),
     ("sections", "sections", WRENCH),
     ("drives", "joints", {"N·s": ("drive",), "N·m·s": ("drive",)}),
 )
@@ -119,7 +125,7 @@ class Impulses:
         recovery = self.recovery
         mechanism, size = self.setup.scene.mechanism, self.setup.scene.layout.size
         own = magnitudes(mechanism, recovery.states, recovery.inertia, recovery.actions, recovery.energy, size).by_unit
-        return {UNITS[unit]: own[unit] for unit in UNITS}
+        return {struck: own[unit] for unit, struck in AT_A_BLOW.items()}
 
     @property
     def residual(self) -> float:
@@ -239,7 +245,8 @@ def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], fl
                     for other, shared in zip(others, same, strict=True)
                     for mine, its in pairs(part(own.shown.get(block, {})), part(other.shown.get(block, {})), names)
                 ]
-                found[f"{kind}{end}", unit] = 2.0 * max(differences, default=0.0)
+                name = f"{kind}{end}", unit
+                found[name] = max(found.get(name, 0.0), 2.0 * max(differences, default=0.0))
     return found
 
 
