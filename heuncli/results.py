@@ -96,6 +96,7 @@ class JointBlock(TypedDict, total=False):
     tilting: Array
     tension: Array
     pressure: Array
+    contact_point: Array
     shares: Block
 
 

@@ -181,6 +181,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
     *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
+    *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
         scalar("tension", "N")),
@@ -311,7 +312,8 @@ ESTIMATES = {
     "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 # of which estimate those errors are that have none of their own
-KIND_OF = {"forces": "reactions", "axis": "foundation"}
+KIND_OF = {"forces": "reactions", "axis": "foundation", "attitudes": "motion", "rodrigues": "motion"}
+ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
@@ -428,6 +430,8 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
         return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
     if number.startswith("energy_"):
         return "energy"
+    if kind == "bodies" and number in ATTITUDES:
+        return ATTITUDES[number]
     return ESTIMATES.get(kind, "motion")
 
 

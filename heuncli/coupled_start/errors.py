@@ -45,7 +45,9 @@ def _owner(layout: Layout, rows: Indices, left: Array) -> tuple[str, str, str]:
     else:
         coupling = mechanism.couplings[k - joints]
         what, bodies = f"coupling {coupling.name} ({coupling.given.type})", set(coupling.bodies)
-    names = [_name(mechanism, i) for i in sorted(bodies)]
+    if len(bodies) == 1:  # a coupling lists no ground
+        bodies.add(GROUND)
+    names = [_name(mechanism, i) for i in sorted(bodies, reverse=True)]
     return what, mechanism.owner(k), " and ".join([", ".join(names[:-1]), names[-1]] if len(names) > 1 else names)
 
 

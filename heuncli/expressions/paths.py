@@ -2,7 +2,8 @@
 
     r(s) = c0 + c1 h + c2 h² + c3 h³,   h = s - s_k        in the piece from s_k on, each c a vector
 The tables of the coordinates may have knots of their own: a piece of the path ends where one of any of them does.
-Beyond open ends the last piece goes on, and a closed path round again.
+Beyond open ends the last piece goes on, and a closed path round again. Beside a path in a plane the centre of a roller
+may run, which is the place that is asked for then (beside.py); the path itself is its track.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.beside import bounds, centre, flat
 from heuncli.expressions.programs import TableFunction
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -21,15 +23,22 @@ LOOKS = 8  # places in a piece at which a path is looked at
 AT_ONCE = 2**18  # distances that are looked at together
 NEWTON = 32  # steps to the nearest place
 TRIED = 4  # of the places looked at, those from which the nearest is sought
+NO_PLANE = np.zeros(3)
+NO_PLANE.setflags(write=False)
 
 
 @record
 class Path:
-    """A path: knots (n + 1,), coefficients (n, 4, 3) [m]; period: of the parameter where it is closed, else 0."""
+    """A path: knots (n + 1,), coefficients (n, 4, 3) [m]; period: of the parameter where it is closed, else 0.
+
+    radius: of a roller [m] whose centre is to the left of the path, seen so that its plane's normal (3,) points here.
+    """
 
     knots: Array
     coefficients: Array
     period: float
+    radius: float = 0.0
+    normal: Array = NO_PLANE
 
     @property
     def first(self) -> float:
@@ -50,13 +59,19 @@ class Path:
         return replace(self, knots=self.knots + phase) if phase else self
 
     def at(self, s: Array | float) -> tuple[Array, Array, Array]:
-        """Place, slope and bend r, r', r'' at parameters of any shape, (..., 3) each."""
+        """Place, slope and bend of what runs along the path, or beside it, (..., 3) each; s of any shape."""
+        r, slope, bend, twist = self.track(s)
+        return centre(self.radius, self.normal, (r, slope, bend, twist)) if self.radius else (r, slope, bend)
+
+    def track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """Place r of the path itself and its derivatives r', r'', r''', (..., 3) each; s of any shape."""
         s = np.asarray(s, dtype=float)
         inside = self.first + np.mod(s - self.first, self.period) if self.period else s
         k = np.clip(np.searchsorted(self.knots, inside, side="right") - 1, 0, len(self.knots) - 2)
         h = (inside - self.knots[k])[..., None]
         c0, c1, c2, c3 = np.moveaxis(self.coefficients[k], -2, 0)
-        return ((c3 * h + c2) * h + c1) * h + c0, (3.0 * c3 * h + 2.0 * c2) * h + c1, 6.0 * c3 * h + 2.0 * c2
+        slope, bend = (3.0 * c3 * h + 2.0 * c2) * h + c1, 6.0 * c3 * h + 2.0 * c2
+        return ((c3 * h + c2) * h + c1) * h + c0, slope, bend, np.broadcast_to(6.0 * c3, bend.shape)
 
     @property
     def looked_at(self) -> Array:
@@ -133,6 +148,12 @@ class Path:
 
     @property
     def greatest(self) -> tuple[float, float, float]:
+        """Bounds of place, slope and bend of what runs along the path, or beside it."""
+        r, slope, bend = self.track_greatest
+        return (r + self.radius, *bounds(self)) if self.radius else (r, slope, bend)
+
+    @property
+    def track_greatest(self) -> tuple[float, float, float]:
         """Bounds of |r|, |r'| and |r''| over all of it: no coordinate of a cubic exceeds its Bernstein coefficients."""
         h = np.diff(self.knots)[:, None]
         c0, c1, c2, c3 = np.moveaxis(self.coefficients, 1, 0)
@@ -142,6 +163,13 @@ class Path:
         bends = np.stack([2.0 * b, 2.0 * b + 6.0 * c]) / (h * h)
         r, slope, bend = (float(np.sqrt(np.max(np.sum(x * x, axis=-1)))) for x in (places, slopes, bends))
         return r, slope, bend
+
+
+def path_beside(path: Path, radius: float, normal: Sequence[float]) -> Path:
+    """What the centre of a roller runs along beside a path, which lies across the normal to the digits typed."""
+    N = np.asarray(normal, dtype=float)
+    N = N / np.sqrt(N @ N)
+    return replace(path, coefficients=flat(path.coefficients, N), radius=radius, normal=N)
 
 
 def path_of(parts: Sequence[TableFunction | float]) -> Path:
@@ -204,10 +232,10 @@ def cusp(path: Path) -> float | None:
     """
     s = path.looked_at
     for _ in range(3):
-        slope = path.at(s)[1]
+        slope = path.track(s)[1]
         size = np.sqrt(np.sum(slope * slope, axis=-1))
         i = int(np.argmin(size))
-        if size[i] < tolerances.STANDS_STILL * path.greatest[1]:
+        if size[i] < tolerances.STANDS_STILL * path.track_greatest[1]:
             return float(s[i])
         low, high = s[max(i - 1, 0)], s[min(i + 1, len(s) - 1)]
         s = np.linspace(low, high, 4 * LOOKS + 1)

@@ -7,7 +7,7 @@ from heuncli.records import record
 from heuncli.results import Block
 from heuncli.tree.held_speeds import holds_speed
 
-BY_DRIVES = "nothing is integrated: the drives leave no freedom, every instant follows from them and the closed chains"
+BY_DRIVES = "nothing is integrated: the drives leave no freedom, every instant follows from them and what closes chains"
 BY_JOINTS = "nothing is integrated: the joints leave no freedom, nothing can move"
 SINGULAR = "integrated, though the drives leave no freedom: on the way lies a singular pose, as a dead centre is"
 CONTACTS = "integrated, though nothing is free: a rope or a stop may open and close"

@@ -12,6 +12,7 @@ if not cython.compiled:
     from heuncli.kernel.chosen import choose_afresh
     from heuncli.kernel.closures import acceleration_of, measure_rows, push_closures, size_of_answer
     from heuncli.kernel.columns import answer_causes, measure_answers, put, unmet
+    from heuncli.kernel.loads import potential_of
     from heuncli.kernel.orthogonal import doubt_multipliers
     from heuncli.kernel.programs import FREE, HELD
     from heuncli.kernel.response import evaluate, must_choose_anew, settle
@@ -41,7 +42,9 @@ def put_body(out: cython.p_double, at: cython.Py_ssize_t, body: cython.pointer[B
     return put(out, at, body.f_joint)
 
 
-def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[Load]) -> cython.Py_ssize_t:
+def put_load(
+    scene: cython.pointer[Scene], out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[Load]
+) -> cython.Py_ssize_t:
     """An applied load, as tables.LOAD_ANSWER."""
     at = put(out, at, load.force)
     at = put(out, at, load.moment)
@@ -52,7 +55,8 @@ def put_load(out: cython.p_double, at: cython.Py_ssize_t, load: cython.pointer[L
     out[at + 1] = load.span
     out[at + 2] = load.rate
     out[at + 3] = load.power
-    return at + 4
+    out[at + 4] = potential_of(scene, load)
+    return at + 5
 
 
 def put_row(
@@ -90,7 +94,7 @@ def put_answers(
         at += 4
     at = j * to.load_width
     for i in range(scene.load_count):
-        at = put_load(to.loads, at, cython.address(scene.loads[i]))
+        at = put_load(scene, to.loads, at, cython.address(scene.loads[i]))
     at = j * to.row_width
     for i in range(scene.closure_count):
         at = put_row(scene, to.rows, at, cython.address(scene.closures[i]))

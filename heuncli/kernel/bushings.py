@@ -5,8 +5,9 @@
     m = J^-T (g(phi) - C phi) - D omega,  phi' = J^-1 omega,  J^-1 = 1 - [phi]/2 + c [phi]^2
     c = (1 - theta/2 cot(theta/2)) / theta^2,  theta = |phi|
 
-a takes the opposite of f and m at b's point. So both have potentials at any angle, 1/2 d'Kd and 1/2 phi' C phi: what
-moves d is the motion of b's point as seen from a, what turns phi is omega = T'(omega_b - omega_a). J is the left
+a takes the opposite of f and m at b's point. g is a preload less tables, each of the component along its own axis. So
+all but damping has potentials at any angle, 1/2 d'Kd and 1/2 phi' C phi less the integrals of g: what moves d is the
+motion of b's point as seen from a, what turns phi is omega = T'(omega_b - omega_a), and m'omega = g'phi'. J is the left
 Jacobian of the turns: Sola, Deray, Atchuthan, A micro Lie theory (2018), (145)-(146). At half a turn phi and -phi are
 one attitude, and the moment jumps from one to the other: there it has no value.
 """
@@ -22,7 +23,9 @@ if not cython.compiled:
     from math import sqrt
 
     from heuncli.kernel.algebra import Mat3, Vec3, add, add_scaled, cross, dot, norm, rotate, rotate_back, scaled, sub
+    from heuncli.kernel.evaluator import area_under, table_at
     from heuncli.kernel.libm import NAN, tan
+    from heuncli.kernel.programs import TABLE, Program, Programs
     from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import axes_of, strain_of
@@ -79,17 +82,8 @@ def times(k: Vec3, x: Vec3) -> Vec3:
     return Vec3(k.x * x.x, k.y * x.y, k.z * x.z)
 
 
-def varying(load: cython.pointer[Load], given: Vec3) -> Vec3:
-    """Of the given components those that have no potential: what varies, not a preload."""
-    return Vec3(
-        given.x if load.x.count else 0.0,
-        given.y if load.y.count else 0.0,
-        given.z if load.z.count else 0.0,
-    )
-
-
 def bushing_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3, motion: Vec3) -> cython.double:
-    """Force or moment of a bushing, put on both bodies; power of what has no potential.
+    """Force or moment of a bushing, put on both bodies; power of its damping, which has no potential.
 
     motion: velocity of b's point, or angular velocity of b, as seen from a. Within one body it loads what lies between,
     and moves nothing.
@@ -104,15 +98,12 @@ def bushing_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given
     gamma: Vec3 = sub(given, times(load.stiffnesses, load.strain))
     drag: Vec3 = times(load.resistances, rate)
     load.rate = norm(rate)
-    lost: cython.double = dot(drag, rate)
     acts: Vec3
     if load.kind == BUSHING_SHIFT:
         acts = sub(gamma, drag)
         load.force = rotate(T, acts)
-        lost = dot(varying(load, given), rate) - lost
     else:
         acts = sub(moment_of(load.strain, gamma), drag)
-        lost = dot(varying(load, given), rate_of_vector(load.strain, rate)) - lost
         if not load.span < load.length:  # half a turn: the moment has two values
             acts = Vec3(NAN, NAN, NAN)
         load.moment = rotate(T, acts)
@@ -121,15 +112,26 @@ def bushing_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given
     if load.a != load.b:
         push(scene, load.b, load.at, load.force, load.moment)
         push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
-    return lost
+    return -dot(drag, rate)
 
 
 def bushing_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """1/2 x'Kx, less what a preload has given, of x = d or phi [J]."""
+    """1/2 x'Kx + the areas under the tables, less what a preload has given, of x = d or phi [J]."""
     x: Vec3 = strain_of(scene, load)
-    given: Vec3 = Vec3(
-        0.0 if load.x.count else load.vector.x,
-        0.0 if load.y.count else load.vector.y,
-        0.0 if load.z.count else load.vector.z,
-    )
-    return 0.5 * dot(x, times(load.stiffnesses, x)) - dot(given, x)
+    found: cython.double = 0.5 * dot(x, times(load.stiffnesses, x)) - dot(load.vector, x)
+    if load.x.count:
+        found += area_in(scene.programs, load.x, x.x)
+    if load.y.count:
+        found += area_in(scene.programs, load.y, x.y)
+    if load.z.count:
+        found += area_in(scene.programs, load.z, x.z)
+    return found
+
+
+def area_in(programs: cython.pointer[Programs], program: Program, x: cython.double) -> cython.double:
+    """The area, from 0 to x, under the one table that a given component is, less a preload."""
+    at: cython.Py_ssize_t = program.start
+    while programs.code[at].op != TABLE:
+        at += 1
+    k: cython.int = programs.code[at].argument
+    return area_under(programs.tables[k], table_at(programs, at + 1, k), x)

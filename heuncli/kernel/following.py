@@ -34,11 +34,8 @@ if not cython.compiled:
         rotate_back,
         scaled,
         slightly_turned,
-        sub,
         transform,
     )
-    from heuncli.kernel.bushings import bushing_energy
-    from heuncli.kernel.carried_points import place_of
     from heuncli.kernel.columns import apply_none, prescribe, stand_still
     from heuncli.kernel.conditions import condition, condition_count
     from heuncli.kernel.course import set_time
@@ -48,22 +45,18 @@ if not cython.compiled:
     from heuncli.kernel.jets import jet
     from heuncli.kernel.landing import begin_to_see, see_stage
     from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.loads import turned_by
+    from heuncli.kernel.loads import potential_of
     from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import Bounds, Jet, Program
     from heuncli.kernel.response import evaluate, respond, settle
     from heuncli.kernel.scene import (
-        BUSHING_SHIFT,
         MESH,
         SHIFT,
-        SPRING,
         TURN,
-        TURN_SPRING,
         Body,
         Closure,
         Counter,
         Freedom,
-        Load,
         Scene,
     )
     from heuncli.kernel.selection import order_all
@@ -362,9 +355,8 @@ def seen_from(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
 
 
 def mechanical_energy(scene: cython.pointer[Scene]) -> cython.double:
-    """Kinetic energy, and potential energy of gravity (from the world's origin) and springs [J]."""
+    """Kinetic energy, and potential energy of gravity (from the world's origin) and of loads [J]."""
     i: cython.Py_ssize_t
-    stretch: cython.double
     found: cython.double = 0.0
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
@@ -373,15 +365,7 @@ def mechanical_energy(scene: cython.pointer[Scene]) -> cython.double:
         found += dot(body.v, cross(body.omega, body.mc))
         found -= dot(scene.gravity, add_scaled(body.mc, body.mass, body.r))
     for i in range(scene.load_count):
-        load: cython.pointer[Load] = cython.address(scene.loads[i])
-        if load.kind == SPRING:
-            stretch = norm(sub(place_of(scene, load.b, load.q), place_of(scene, load.a, load.p))) - load.length
-            found += 0.5 * load.stiffness * stretch * stretch
-        elif load.kind == TURN_SPRING:
-            stretch = turned_by(scene, load) - load.length
-            found += 0.5 * load.stiffness * stretch * stretch
-        elif load.kind >= BUSHING_SHIFT:
-            found += bushing_energy(scene, load)
+        found += potential_of(scene, cython.address(scene.loads[i]))
     return found
 
 

@@ -14,7 +14,7 @@ if not cython.compiled:
     from math import atan2, tanh
 
     from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
-    from heuncli.kernel.bushings import bushing_load
+    from heuncli.kernel.bushings import bushing_energy, bushing_load
     from heuncli.kernel.evaluator import value
     from heuncli.kernel.scene import (
         ACTUATOR,
@@ -33,6 +33,7 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.strains import span_of
     from heuncli.kernel.tree import direction_of, point_of, push
     from heuncli.kernel.values import PointMotion
 
@@ -163,6 +164,18 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     push(scene, load.b, load.at, load.force, load.moment)
     push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
+
+
+def potential_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
+    """Of springs and bushings as the bodies stand, 0 where they are relaxed; none of other loads [J]."""
+    stretch: cython.double = 0.0
+    if load.kind >= BUSHING_SHIFT:
+        return bushing_energy(scene, load)
+    elif load.kind == SPRING:
+        stretch = norm(span_of(scene, load)) - load.length
+    elif load.kind == TURN_SPRING:
+        stretch = turned_by(scene, load) - load.length
+    return 0.5 * load.stiffness * stretch * stretch
 
 
 def turned_by(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:

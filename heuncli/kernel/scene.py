@@ -90,6 +90,8 @@ class Freedom(Record):
     reach: float  # bounds of the path's |r|, |r'| and |r''|
     slope: float
     bend: float
+    radius: float  # of a roller whose centre runs beside the path; 0: on it
+    normal: Vec3  # of the path's plane, to the left of which the roller is
 
     s: Vec3  # its direction, of unit length or, along a path, r'
     curved: Vec3  # along a path r'', else zero

@@ -8,8 +8,8 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, scaled, sub
-    from heuncli.kernel.bushings import moment_along, rate_of_vector, times, varying
+    from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, sub
+    from heuncli.kernel.bushings import moment_along, times
     from heuncli.kernel.loads import given_vector
     from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
@@ -22,13 +22,12 @@ if not cython.compiled:
 def bushing_along(
     scene: cython.pointer[Scene], load: cython.pointer[Load], slope: Vec3, motion: Vec3, d_motion: Vec3
 ) -> BushingTangent:
-    """Of force or moment on b, world axes, and of the power of what has no potential.
+    """Of force or moment on b, world axes, and of the power of its damping.
 
     slope: of its given components; motion: of b as seen from a, world axes, and what that changes by.
     """
     T: Mat3 = axes_of(scene, load)
     given: Vec3 = given_vector(scene, load)
-    free: Vec3 = varying(load, given)
     rate: Vec3 = rotate_back(T, motion)
     d_rate: Vec3 = rotate_back(T, sub(d_motion, swung(scene, load.a, motion)))
     drag: Vec3 = times(load.resistances, d_rate)
@@ -38,12 +37,9 @@ def bushing_along(
     change: Vec3 = sub(slope, times(load.stiffnesses, dx))
     acts: Vec3
     if load.kind == BUSHING_SHIFT:
-        loss += dot(slope, rate) + dot(free, d_rate)
         acts = load.force
     else:
         change = moment_along(x, sub(given, times(load.stiffnesses, x)), dx, change)
-        loss += dot(slope, rate_of_vector(x, rate))
-        loss += dot(free, moment_along(scaled(-1.0, x), rate, scaled(-1.0, dx), d_rate))
         acts = load.moment
     turned: Vec3 = swung(scene, load.a, acts)
     return BushingTangent(add(rotate(T, sub(change, drag)), turned), loss)

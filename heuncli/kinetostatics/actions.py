@@ -88,6 +88,7 @@ class AppliedLoad:
     value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
     that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint,
     the magnitude where that has no one axis (of which a turn spring's angle is the length, other loads have none).
+    potential: its own, (n_t,) [J]; 0 of what has none.
     strain: of a bushing its shift and its turn, (n_t, 2, 3) [m], [rad], in its own axes.
     """
 
@@ -97,6 +98,7 @@ class AppliedLoad:
     length: Array
     rate: Array
     power: Array
+    potential: Array
     strain: Array | None = None
 
 
@@ -121,7 +123,8 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
         strain = rows["strain"] if isinstance(load, BushingLoad) else None
-        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
+        power, potential = (rows[name].sum(axis=1) for name in ("power", "potential"))
+        loads.append(AppliedLoad(load, action, value, span, rate, power, potential, strain))
     return loads
 
 
@@ -141,7 +144,7 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
     action = Action("load", load.name, end, None, force, moment, along)
     none = np.zeros(len(force))
     power = sum((row["power"].sum(axis=1) for _, row in parts), none)
-    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power)
+    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power, none)
 
 
 def _ends(

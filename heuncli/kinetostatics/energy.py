@@ -13,14 +13,14 @@ from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, Mechanism, PairLoad
+from heuncli.mechanism.model import GROUND, Mechanism
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
 def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
-    """Kinetic energy, potential energy (gravity from the world's origin, springs), work of all else, (n_t,) [J]."""
+    """Kinetic energy, potential energy (gravity from the world's origin, loads), work of all else, (n_t,) [J]."""
     mechanism = layout.mechanism
     m = np.array([b.mass for b in mechanism.bodies])
     inertia = np.array([b.inertia for b in mechanism.bodies])
@@ -28,26 +28,10 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
     kinetic = 0.5 * np.einsum("n,tni,tni->t", m, states.v_centre, states.v_centre)
     kinetic = kinetic + 0.5 * np.einsum("tni,nij,tnj->t", w, inertia, w)
     potential = -np.einsum("n,tni,i->t", m, states.centre, mechanism.gravity)
-    for applied in loads:
-        load = applied.load
-        if isinstance(load, PairLoad) and load.value is None:
-            potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.length)
-        elif isinstance(load, JointLoad) and load.kind == "turn_spring":
-            potential = potential + 0.5 * load.stiffness * np.square(applied.length - load.angle)
-        elif isinstance(load, BushingLoad):
-            potential = potential + bushing_energy(load, applied)
+    for load in loads:
+        potential = potential + load.potential
     work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
-
-
-def bushing_energy(load: BushingLoad, applied: AppliedLoad) -> Array:
-    """Of springs and preloads; what hangs on a deflection by a table is work."""
-    assert applied.strain is not None
-    found = np.zeros(len(applied.strain))
-    for x, part in zip(np.moveaxis(applied.strain, 1, 0), (load.shift, load.turn), strict=True):
-        preload = np.array([e.constant or 0.0 for e in part.given])
-        found = found + 0.5 * np.square(x) @ part.stiffness - x @ preload
-    return found
 
 
 def system_vector(mechanism: Mechanism, states: BodyStates) -> Block:

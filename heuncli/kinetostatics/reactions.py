@@ -72,6 +72,14 @@ class JointPoints:
         """World positions, (n_t, 3) each."""
         return self.states.point_positions([joint.b for joint in self.joints], [joint.q for joint in self.joints])
 
+    def on_path(self, joint: Joint, centre: Array) -> Array:
+        """Where a roller touches the path beside which its centre runs, world axes, (n_t, 3)."""
+        from heuncli.expressions.beside import left  # few joints are
+
+        assert joint.path is not None
+        n = left(self.states.direction(joint.a, joint.path.normal), self.states.ways[:, joint.way])
+        return centre - joint.path.radius * n
+
 
 @record
 class JointLoads:

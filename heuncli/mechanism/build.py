@@ -249,7 +249,7 @@ def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
     """Six springs and dampers."""
 
     def arrays(of: m.Elastic[m.Vec]) -> Elastic:
-        return Elastic(np.array(of.stiffness), np.array(of.damping), of.given)
+        return Elastic(np.array(of.stiffness), np.array(of.damping), np.array(of.preload), of.given)
 
     a, b = f.from_, f.to
     return BushingLoad(

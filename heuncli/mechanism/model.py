@@ -188,8 +188,7 @@ class BushingLoad:
     @property
     def is_conservative(self) -> bool:
         """Whether it has a potential."""
-        damped = np.any(self.shift.damping) or np.any(self.turn.damping)
-        return not damped and all(e.constant is not None for e in self.values)
+        return not (np.any(self.shift.damping) or np.any(self.turn.damping))
 
     @property
     def points(self) -> tuple[tuple[int, Array], ...]:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from importlib import import_module
 
 from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.model import Mechanism
 from heuncli.reduction.model import Reduced, Reduction
 from heuncli.stages import ANEW, Stages
 from heuncli.tree.prepare import PreparedScene
@@ -19,15 +20,21 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 )
 
 
-def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
-    """The smallest scene that moves as this one does; stages: each step is one.
+def whole(mechanism: Mechanism) -> list[str]:
+    """Why a scene is moved as it is given, in sentences; none where it may be made smaller."""
+    paths = any(joint.path is not None for joint in mechanism.joints)
+    reasons = (
+        (mechanism.rubbing, "friction hangs on what joints carry, and in a smaller scene they carry less"),
+        (mechanism.couplings, "couplings look at bodies and coordinates that a smaller scene might be without"),
+        (paths, "a path is fixed in its body as that is given"),
+    )
+    return [f"the scene is moved as it is given: {why}" for met, why in reasons if met]
 
-    Where friction hangs on what joints carry nothing is left out, for in a smaller scene they carry less; nor where
-    couplings look at bodies and coordinates that a smaller scene might be without, or where a point runs along a path.
-    """
-    mechanism = scene.mechanism
-    if mechanism.rubbing or mechanism.couplings or any(joint.path is not None for joint in mechanism.joints):
-        return Reduced((), ())
+
+def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:
+    """The smallest scene that moves as this one does; stages: each step is one."""
+    if reasons := whole(scene.mechanism):
+        return Reduced((), tuple(reasons))
     steps: list[Reduction] = []
     kept: list[str] = []
     for name, concerns in STEPS:

@@ -26,7 +26,7 @@ def turning_sums(poses: Shares, asked: Shares) -> list[dict[str, Array]]:
     sums: list[dict[str, Array]] = []
     for names in dependent_components(poses):
         if len(names) <= MOST_TERMS and (c := factors(np.stack([asked[n] for n in names], axis=1))) is not None:
-            sums.append(dict(zip(names, c.T, strict=True)))
+            sums.append({name: factor for name, factor in zip(names, c.T, strict=True) if factor.any()})
     return sums
 
 
@@ -95,7 +95,7 @@ def factors(rows: Array) -> Array | None:
     if not usual.any() or (diagonal[usual, -1] > tolerances.DEPENDENT_SHARES * most[usual]).any():
         return None
     c = np.ones((len(rows), n))
-    c[usual, :-1] = -np.linalg.solve(R[usual, :-1, :-1], R[usual, :-1, -1:])[:, :, 0]
+    c[usual, :-1] = solved(R[usual, :-1, :-1], -R[usual, :-1, -1], rows.shape[2])
     for t in np.flatnonzero(~usual):
         U, sigma, _ = np.linalg.svd(R[t].T)
         N = U[:, sigma <= tolerances.DEPENDENT_SHARES * most[t]]
@@ -108,3 +108,16 @@ def factors(rows: Array) -> Array | None:
     unit: Array = c / np.sqrt(np.sum(c * c, axis=1))[:, None]
     unit *= np.sign(unit[0, np.argmax(np.abs(unit[0]) > LARGE)])
     return unit
+
+
+def solved(T: Array, r: Array, k: int) -> Array:
+    """Solutions x (n_t, n) of triangular T x = r, from factors of k rows; zero where rounding alone may have made them.
+
+    Householder's factors are those of columns off by at most k (n + 1) u of their lengths, here 1 at most. So x is off
+    by at most that, times |T^-1|, times 1 + sum |x|.
+    """
+    inverse = np.linalg.inv(T)
+    x = (inverse @ r[:, :, None])[:, :, 0]
+    u = 0.5 * np.finfo(np.float64).eps
+    off = k * (T.shape[1] + 1) * u * np.abs(inverse).sum(axis=2) * (1.0 + np.abs(x).sum(axis=1, keepdims=True))
+    return np.where(np.abs(x) > off, x, 0.0)

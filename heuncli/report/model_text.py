@@ -51,7 +51,7 @@ def facts(model: Mapping[str, Any]) -> list[tuple[str, str]]:
         ("bodies", _things(names.get("bodies", model.get("bodies")))),
         ("joints", _things(names.get("joints", model.get("joints")))),
         ("freedoms", f"{freedoms}{beside}" if freedoms is not None else ""),
-        ("loops", count(int(model["loops"]), "closed loop") if isinstance(model.get("loops"), int) else ""),
+        ("loops", _loops(model)),
         ("redundant", _redundant(model.get("redundant"))),
         ("method", str(model.get("method") or "")),
     ]
@@ -67,6 +67,15 @@ def _things(what: Any) -> str:
         return "" if what is None else str(what)
     rest = f", ... ({len(names) - MOST_NAMES} more)" if len(names) > MOST_NAMES else ""
     return f"{len(names)}: {', '.join(names[:MOST_NAMES])}{rest}" if names else "none"
+
+
+def _loops(model: Mapping[str, Any]) -> str:
+    """What is closed by joints, and how many couplings tie bodies beside them."""
+    loops, coupled = model.get("loops"), int(model.get("couplings", 0))
+    if not isinstance(loops, int):
+        return ""
+    closed = count(loops, "closed loop")
+    return f"{closed} of joints; {count(coupled, 'coupling')} beside them" if coupled else closed
 
 
 def _redundant(what: Any) -> str:

@@ -63,4 +63,4 @@ def paths_of(spec: Spec, body: str) -> Iterator[Array]:
     for own in spec.joints.values():
         if own.path is not None and own.a == body:
             s = own.path.looked_at
-            yield np.array(own.p) + own.path.at(s[:: max(1, len(s) // MOST)])[0]
+            yield np.array(own.p) + own.path.track(s[:: max(1, len(s) // MOST)])[0]

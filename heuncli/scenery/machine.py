@@ -89,7 +89,13 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
     bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
     paths = tuple(drawn_lines(spec, GROUND))
-    if not any(own.type in ("gear", "belt") for own in spec.couplings.values()):
+    kinds = {own.type for own in spec.couplings.values()}
+    if "screw" in kinds:
+        from heuncli.scenery.threads import threads_of  # few scenes have screws
+
+        threads = threads_of(spec)
+        bodies = tuple(body._replace(lines=(*body.lines, *threads.get(body.name, ()))) for body in bodies)
+    if not kinds & {"gear", "belt"}:
         return Machine(spec.title, bodies, joints, lines, grounded, paths)
     from heuncli.scenery.pitch_lines import pitch_lines  # few scenes have gears
 

@@ -86,7 +86,7 @@ class Gear(NamedTuple):
 class Screw(NamedTuple):
     """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
 
-    lead: travel a turn [m], of a left-handed thread below zero.
+    lead: travel a turn [m], in the coordinates as they are written.
     """
 
     terms: tuple[Term, ...]

@@ -242,6 +242,8 @@ class CurveJoint(Bearing):
     x: PathPart = 0.0
     y: PathPart = 0.0
     z: PathPart = 0.0
+    radius: Length | None = None
+    normal: Direction | None = None
     initial: Sliding | None = None
 
 

@@ -251,12 +251,13 @@ class Distributed(NamedTuple):
 class Elastic(Generic[V]):
     """Three springs and dampers of a bushing, of its shift or of its turn, along its axes.
 
-    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; given: what it exerts beside, [N] or [N m]: a preload, or
-    in place of a stiffness what hangs on the deflection.
+    stiffness [N/m] or [N m/rad], damping [N s/m] or [N m s]; preload [N] or [N m]; given: what it exerts beside the
+    stiffness: the preload, and in place of a stiffness a table of the deflection, which has its areas.
     """
 
     stiffness: V
     damping: V
+    preload: V
     given: Vector
 
 

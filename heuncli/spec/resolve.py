@@ -224,10 +224,11 @@ class Resolver:
         )
 
     def path(self, joint: f.CurveJoint) -> Path:
-        """What the point of a curve runs along."""
-        from heuncli.expressions.paths import path_of  # with NumPy, which a spec without one has no need of
+        """What the point of a curve runs along, or the centre of its roller beside."""
+        from heuncli.expressions.paths import path_beside, path_of  # with NumPy, which a spec without one needs not
 
-        return path_of((joint.x, joint.y, joint.z))
+        found = path_of((joint.x, joint.y, joint.z))
+        return found if joint.radius is None else path_beside(found, joint.radius, joint.normal or (0.0, 0.0, 1.0))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
@@ -297,15 +298,25 @@ class Resolver:
 
     def elastic(self, name: str, of: str, stiffness: Any, damping: Any, preload: m.Vec | None) -> m.Elastic[m.Vec]:
         """The three springs of a bushing's shift or turn; what has no stiffness given is a table."""
-        laws = three(stiffness)
-        given = [Expression.of(x) for x in preload or m.ZERO]
+        laws = self.storing(three(stiffness))
+        preload = preload or m.ZERO
+        given = [Expression.of(x) for x in preload]
         numbers = tuple(0.0 if isinstance(law, Expression) else law for law in laws)
         path = f"forces.{name}.{'stiffness' if of == 'shift' else 'turning'}"
         for i, law in enumerate(laws):
             if isinstance(law, Expression):
                 placed = renamed(self.placed(law, path), {law.uses[0]: (f"{LOADS}.{name}", f"{of}_{'xyz'[i]}")})
                 given[i] = total(given[i], placed)
-        return m.Elastic((numbers[0], numbers[1], numbers[2]), three(damping), (given[0], given[1], given[2]))
+        return m.Elastic((numbers[0], numbers[1], numbers[2]), three(damping), preload, (given[0], given[1], given[2]))
+
+    def storing(self, laws: tuple[Any, Any, Any]) -> list[Any]:
+        """Stiffnesses, those by a table with its areas; of one table for several axes they are found once."""
+        if not any(isinstance(law, Expression) for law in laws):
+            return list(laws)
+        from heuncli.expressions.areas import with_areas  # with NumPy, which a table has loaded
+
+        own = {id(law): with_areas(law) for law in laws if isinstance(law, Expression)}
+        return [own.get(id(law), law) for law in laws]
 
     def distributed(self, load: f.DistributedEntry, path: str) -> m.Distributed:
         body = self.document.bodies[load.on]

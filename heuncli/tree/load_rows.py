@@ -86,12 +86,11 @@ def with_loads(frame: LayoutFrame, mechanism: Mechanism, programs: ValuePrograms
     found = stages.run(load_table, mechanism, frame, placed).copy()
     vector = found["vector"].view(flat(found.dtype["vector"]))
     for load, rows in mechanism.load_rows():
+        if isinstance(load, BushingLoad):
+            vector[rows] = load.shift.preload, load.turn.preload
+            continue
         for i, e in enumerate(load.values):
-            constant = 0.0 if e.constant is None else e.constant
-            if isinstance(load, BushingLoad):
-                vector[rows.start + i // 3, i % 3] = constant
-            else:
-                vector[rows, i] = constant
+            vector[rows, i] = 0.0 if e.constant is None else e.constant
     tables = no_loads() | {"loads": found}
     if programs.pack.code:
         tables["watches"] = table_of(kernel.Watch, watch_rows(mechanism, programs))

@@ -232,7 +232,7 @@ class _Builder:
         reach, slope, bend = path.greatest
         return replace(
             row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
-            bend=bend,
+            bend=bend, radius=path.radius, normal=path.normal,
         )  # fmt: skip
 
     def _put_path(self, path: Path) -> int:

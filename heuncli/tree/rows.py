@@ -61,6 +61,8 @@ class FreedomRow:
     reach: float = 0.0
     slope: float = 0.0
     bend: float = 0.0
+    radius: float = 0.0
+    normal: Vector = ZERO
 
 
 @record

@@ -67,7 +67,7 @@ def _answer(vectors: str, numbers: str = "") -> np.dtype[np.void]:
 BODY_ANSWER = _answer("R r omega v alpha a joint_moment joint_force")
 FREEDOM_ANSWER = _answer("", "q u udot drive")
 # force, moment: ON b, at the point `at` of b; `from_at`: its counterpart on a; strain: of a bushing, in its axes.
-LOAD_ANSWER = _answer("force moment at from_at strain", "value span rate power")
+LOAD_ANSWER = _answer("force moment at from_at strain", "value span rate power potential")
 # f, m: ON b for a multiplier of 1, about the `to` point; closed: whether it takes part, as contacts do that are not
 # open; rate, acceleration: of its gap; terms: the size of those that its acceleration is the sum of.
 CLOSURE_ANSWER = _answer("f m", "multiplier doubt gap chosen closed rate acceleration terms")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 from collections.abc import Callable
 from functools import cache
 from typing import Any
@@ -12,8 +13,9 @@ import numpy as np
 import pytest
 
 from heuncli.errors import SolveError, SpecError
+from heuncli.expressions.beside import tightest
 from heuncli.expressions.curves import fit
-from heuncli.expressions.paths import cusp, path_of
+from heuncli.expressions.paths import cusp, path_beside, path_of
 from heuncli.results import Array
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved
@@ -244,6 +246,114 @@ def test_what_does_not_act_along_a_path(head: str, message: str) -> None:
     """Told with a hint: its direction is not that of an axis."""
     with pytest.raises(SpecError, match=message):
         solved(bead(EIGHT[0], "0", EIGHT[1], "travel: 0.3", "[0, 1]", head=head))
+
+
+WAVY = [table(lambda s: s, -1.0, 7.0, 160), table(lambda s: 0.3 * np.cos(s), -1.0, 7.0, 160)]
+ROUNDED = (2.0 * math.pi / 240) ** 2 / 12.0
+ABOVE, BELOW = "[0, -1, 0]", "[0, 2, 0]"  # where these point to the eye, the track goes on to the right, or to the left
+
+
+def beside_the_waves(s: Array, R: float) -> tuple[Array, Array, Array, Array]:
+    """Of a roller above z = .3 cos x, by splines: its centre, |p'|, the path's normal up, its curvature toward that."""
+    from scipy.interpolate import CubicSpline
+
+    x = np.linspace(-1.0, 7.0, 161)
+    waves = CubicSpline(x, 0.3 * np.cos(x))  # heun's cubic is not-a-knot, too
+    slope, bend = waves(s, 1), waves(s, 2)
+    size = np.sqrt(1.0 + slope * slope)
+    normal = np.stack([-slope, 0.0 * s, 0.0 * s + 1.0], axis=-1) / size[:, None]
+    curved = bend / size**3
+    return np.stack([s, 0.0 * s, waves(s)], axis=-1) + R * normal, (1.0 - R * curved) * size, normal, curved
+
+
+@pytest.mark.parametrize(("R", "normal"), [(0.5, ABOVE), (-0.5, BELOW)])
+def test_a_roller_beside_a_wavy_track(R: float, normal: str) -> None:
+    """Its speed is that of its height, and dt = |p'| ds / v; its centre's path curves with k / (1 - k R)."""
+    knots = np.linspace(-1.0, 7.0, 161)[30:141]
+    first = beside_the_waves(knots[:1], R)
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    half = 0.5 * np.diff(knots)
+    inner = (0.5 * (knots[1:] + knots[:-1]) + half * nodes[:, None]).ravel()
+
+    def speed(s: Array) -> Array:
+        return np.sqrt(25.0 - 2.0 * 9.81 * (beside_the_waves(s, R)[0] - first[0])[:, 2])
+
+    rates = (beside_the_waves(inner, R)[1] / speed(inner)).reshape(8, -1)
+    t = np.append(0.0, np.cumsum(half * (weights @ rates)))
+    at = [0, 23, 61, 110]
+    start = f"travel: {float(knots[0])}, speed: {5.0 / float(first[1][0])!r}"
+    text = bead(WAVY[0], "0", WAVY[1], start, str(t[at].tolist()))
+    results = solved(text.replace("initial", f"radius: 0.5, normal: {normal}, initial"))
+    centre, size, up, curved = beside_the_waves(knots[at], R)
+    v = speed(knots[at])
+    near(results.coordinates["wire"]["travel"], knots[at], 7.0, 1e-9)
+    near(results.coordinates["wire"]["speed"] * size, v, 5.0, 1e-9)
+    near(results.bodies["bead"]["position"], centre, 7.0, 1e-9)
+    near(results.joints["wire"]["contact_point"], centre - R * up, 7.0, 1e-9)
+    carried = 2.0 * (v * v * curved / (1.0 - curved * R) + 9.81 * up[:, 2])
+    near(results.joints["wire"]["force"], carried[:, None] * up, 50.0, 1e-8)
+
+
+@pytest.mark.parametrize(("normal", "radius"), [("[0, 0, 1]", 0.7), ("[0, 0, -3]", 1.3)])
+def test_a_roller_beside_a_circle(normal: str, radius: float) -> None:
+    """Within or outside of a ring it runs on a ring, in the plane and in space, on an arm that turns, and driven."""
+    ring = [table(f, 0.0, 2.0 * math.pi, 240, ROUND) for f in (np.cos, np.sin)]
+    arm = "  arm: {mass: 3, center: [0.2, 0, 0], inertia: [0.1, 0.2, 0.3], points: {O: [0.1, 0, 0]}}"
+    plain = bead(*ring, "0", "travel: 0, speed: 3", "[0, 0.2, 0.5, 1.1]", "arm.O", arm).replace(
+        "[0, 0, -9.81]", "[0, 0, 0]"
+    )
+    other = [table(lambda s, f=f: radius * f(s), 0.0, 2.0 * math.pi, 240, ROUND) for f in (np.cos, np.sin)]
+    for drive in ("", "drives: {go: {joint: wire, travel: 'sin(3*t)'}}\n"):
+        for head in ("", "heun: 1\nspace: planar"):
+            text = plain.replace("heun: 1", head or "heun: 1").replace("analysis", drive + "analysis")
+            found = solved(text.replace("initial: {travel", f"radius: 0.3, normal: {normal}, initial: {{travel"))
+            wanted = text
+            for one, new in zip(ring, other, strict=True):
+                wanted = wanted.replace(one, new)
+            as_ring = solved(wanted)
+            for name in ("wire", "hub"):  # a spline's curvature is off by h^2/12, of both
+                near(found.joints[name]["force"], as_ring.joints[name]["force"], 130.0, 2.0 * ROUNDED)
+            near(found.coordinates["wire"]["travel"], as_ring.coordinates["wire"]["travel"], 3.3, 2.0 * ROUNDED)
+            away = found.joints["wire"]["contact_point"] - found.joints["hub"]["point"]
+            s = found.coordinates["wire"]["travel"] + found.coordinates["hub"]["angle"]
+            near(away, np.stack([np.cos(s), np.sin(s), 0.0 * s], axis=-1), 1.0, 1e-8)
+
+
+@pytest.mark.parametrize(("keys", "message"), [
+    ("radius: 3.4, normal: [0, -1, 0]", "the path curves with 3.333 m at travel 0, where the roller has 3.4 m"),
+    ("radius: 3.3, normal: [0, -1, 0]", None),
+    ("radius: 30, normal: [0, 1, 0]", None),
+    ("radius: 0.2", "a roller beside a path needs its 'normal'"),
+    ("normal: [0, 1, 0]", "'normal' without 'radius'"),
+    ("radius: 0.2, normal: [0, 1, 0.01]", "does not lie in a plane across its normal"),
+    ("radius: 0.2, normal: [0, 0, 0]", "which is no direction"),
+    ("radius: 0, normal: [0, 1, 0]", "radius must be more than 0"),
+])  # fmt: skip
+def test_what_no_roller_follows(keys: str, message: str | None) -> None:
+    """z = .15 x^2 curves with 1 / .3 m where it is lowest, toward what is above."""
+    bowl = [table(f, -2.0, 2.0, 8) for f in (lambda s: s, lambda s: 0.15 * s * s)]
+    text = bead(bowl[0], "0", bowl[1], "travel: 0.5", "[0, 0.01]").replace("initial", f"{keys}, initial")
+    if message is None:
+        solved(text)
+        return
+    with pytest.raises(SpecError, match=re.escape(message)):
+        solved(text)
+
+
+def test_the_bounds_of_a_roller_beside_a_path() -> None:
+    """How far and how fast its centre gets is never more than is told, nor much less; the tightest place is found."""
+    s = np.linspace(0.0, 6.0, 11)
+    path = path_of([fit("t", s.tolist(), f(s).tolist(), "cubic", None, None) for f in (np.array, np.cos)] + [0.2])
+    close = np.linspace(0.0, 6.0, 20001)
+    for normal in ((0.0, 0.0, 2.0), (0.0, 0.0, -1.0)):
+        roller = path_beside(path, 0.4, normal)
+        for found, most in zip(roller.at(close), roller.greatest, strict=True):
+            assert np.sqrt(np.sum(found * found, axis=1)).max() * 1.5 <= most * 1.5 <= 6.0 * np.abs(found).max()
+        _, slope, bend, _ = roller.track(close)
+        shares = 0.4 * (np.cross(slope, bend) @ roller.normal) / np.sum(slope * slope, axis=1) ** 1.5
+        where, share = tightest(roller)
+        assert shares.max() <= share + 1e-12 <= shares.max() + 1e-6
+        assert where == pytest.approx(close[np.argmax(shares)], abs=1e-3)
 
 
 @pytest.mark.parametrize(("down", "end"), [(1, "> 3"), (-1, "< 0")])

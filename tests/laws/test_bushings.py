@@ -44,12 +44,20 @@ def two_bodies(**mount: Any) -> dict[str, Any]:
 
 DAMPED = {"damping": [3.0, 1.0, 2.0], "turning_damping": [0.1, 0.2, 0.3]}
 PRELOADED = {"preload": [1.0, 2.0, 40.0], "turning_preload": [0.3, 0.2, -0.5]}
+RUBBER = {"x": [-0.3, -0.1, 0.0, 0.2, 0.4], "y": [-90, -20, 1, 30, 160], "interpolation": "cubic", "outside": "hold"}
+TWIST = {"x": [-3.2, -1.0, 0.5, 3.2], "y": [-25.0, -6.0, 2.0, 30.0], "interpolation": "pchip"}
+COGS = {"x": [0.1, 0.2, 0.4], "y": [20.0, -30.0, 20.0], "interpolation": "cubic", "period": 0.3}
+BY_TABLES = {"stiffness": ["rubber", 300.0, "cogs"], "turning": [3.0, "twist", "twist"]}
+TABLES = {"rubber": RUBBER, "twist": TWIST, "cogs": COGS}
 
 
-@pytest.mark.parametrize("more", [{}, PRELOADED, DAMPED | PRELOADED], ids=["springs", "preloaded", "damped"])
+@pytest.mark.parametrize(
+    "more", [{}, PRELOADED, DAMPED | PRELOADED, BY_TABLES | PRELOADED, BY_TABLES | DAMPED],
+    ids=["springs", "preloaded", "damped", "tables", "damped-tables"],
+)  # fmt: skip
 def test_energy(more: dict[str, Any]) -> None:
-    """Springs and preloads have a potential at any angle; what dampers take is work, and never given back."""
-    found = solved(two_bodies(**more))
+    """Springs, preloads and tables have a potential at any angle; what dampers take is work, and never given back."""
+    found = solved(two_bodies(**more) | ({"tables": TABLES} if "stiffness" in more else {}))
     assert float(np.linalg.norm(found.forces["mount"]["turn"], axis=1).max()) > 1.0
     e = found.energy
     near(

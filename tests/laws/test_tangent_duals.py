@@ -16,6 +16,7 @@ from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.tree.layout import Layout
 from tests.oracle.values import to_yaml
+from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.dual_tangent import dual_tangent
 from tests.shared.folders import SPECS
 from tests.shared.loops import loop_scene
@@ -130,6 +131,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "flat": lambda: flat_scene(which),
         "thin": lambda: to_yaml(thin_rods(which)[0]),
         "rolling": lambda: rolling_scene(which)[0],
+        "curve": lambda: coupled_scene(which, ("curve",)),
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }
@@ -144,6 +146,7 @@ CASES = [
     *(("flat", seed) for seed in (0, 2, 6, 14)),
     *(("thin", seed) for seed in (0, 1)),
     *(("rolling", seed) for seed in (3, 4, 5)),
+    *(("curve", seed) for seed in (0, 1)),  # a point on its path, a roller beside
     ("spinning", BALLS), ("text", LOADED), ("text", ELASTIC), ("text", FOUR_BAR.replace("SPACE", "spatial")),
     ("text", FOUR_BAR.replace("SPACE", "planar")),
 ]  # fmt: skip

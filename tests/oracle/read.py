@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from tests.oracle.curves import Track, track
 from tests.oracle.masses import Mass, mass_of
 from tests.oracle.turns import Array, about, attitude, cross, unit
 
@@ -65,6 +66,7 @@ class Joint:
     relative: Array
     zero: Array | None
     drive: tuple[str, tuple[Callable[[float], float], ...]] | None
+    track: Track | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,6 +123,7 @@ def joint(scene: Scene, name: str, spec: Mapping[str, Any], drive: Mapping[str, 
         relative,
         drawn if assembled else np.eye(3),
         prescribed,
+        track(scene, spec),
     )
 
 

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 
 from tests.oracle import cams, gears
+from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.sums import sums
 from tests.oracle.turns import Array, across, cross, turn_vector
@@ -37,6 +38,7 @@ KINDS = {
     "line": ("across", "none"),
     "plane": ("along", "none"),
     "rod": ("between", "none"),
+    "curve": ("beside", "none"),
 }
 
 
@@ -67,6 +69,11 @@ def directions(which: str, joint: Joint, state: State) -> Directions:
         length = float(np.linalg.norm(gap))
         n = gap / length
         return [(n, (opening - n * float(n @ opening)) / length)]
+    if which == "beside":
+        assert joint.track is not None
+        x, v = seen(A, joint.a.point, B.point(joint.b.point), B.speed(joint.b.point))
+        ways = [(A.rotation @ e, A.rotation @ e_rate) for e, e_rate in joint.track.across(x, v)]
+        return [(e, e_rate + cross(A.angular_velocity, e)) for e, e_rate in ways]
     if which == "both":  # a·b = 0: turning about b×a is held
         a, b = A.rotation @ joint.axis, B.rotation @ joint.to_axis
         return [(cross(b, a), cross(cross(B.angular_velocity, b), a) + cross(b, cross(A.angular_velocity, a)))]

@@ -44,5 +44,10 @@ def test_a_note_tells_the_counts_and_the_sentences() -> None:
     assert max(map(len, text.splitlines())) <= WIDTH
 
 
+def test_what_couplings_close_is_told_beside_the_loops_of_joints() -> None:
+    assert "  loops      no closed loops of joints; 1 coupling beside them\n" in note("", MODEL | {"couplings": 1})
+    assert "  loops      2 closed loops of joints; 3 couplings" in note("", MODEL | {"loops": 2, "couplings": 3})
+
+
 def test_names_are_not_listed_without_end() -> None:
     assert "... (88 more)" in note("", {"bodies": [f"b{i}" for i in range(100)]})

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli.redundancy.turning_sums import factors
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import Certainty
 from tests.shared.fakes import pendulum
@@ -57,3 +58,20 @@ def test_moments_and_long_sums_are_left_to_json() -> None:
 
 def test_none() -> None:
     assert sums_table(pendulum(T), Certainty({}, {})) is None
+
+
+def test_a_factor_that_rounding_made_is_zero() -> None:
+    """Of c = a cos(t) + b sin(t), seen in self-stresses that are turned at random, what vanishes at 0 and at 90 deg."""
+    rng = np.random.default_rng(3)
+    angles = np.concatenate([[0.0, np.pi / 2], np.linspace(0.1, 1.4, 30)])
+    wide, seen = np.array([cos_sin(angle) for angle in angles]), rng.standard_normal((2, 3))
+    rows = np.stack([np.broadcast_to(seen[0], (32, 3)), np.broadcast_to(seen[1], (32, 3)), wide @ seen], axis=1)
+    c = factors(rows)
+    assert c is not None
+    assert (c[:2] == 0.0).sum(axis=1).tolist() == [1, 1] and (c[2:] != 0.0).all()
+    assert np.abs(c - np.column_stack([wide, -np.ones(32)]) / np.sqrt(2.0)).max() < 1e-14
+
+
+def cos_sin(angle: float) -> tuple[float, float]:
+    """Both at once; of a right angle the cosine is none, which np.cos does not say."""
+    return float(np.cos(angle)) if angle != np.pi / 2 else 0.0, float(np.sin(angle))

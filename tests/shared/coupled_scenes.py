@@ -180,10 +180,13 @@ def cam(parts: Parts, name: str) -> None:
 
 
 def curve(parts: Parts, name: str) -> None:
-    """A body on a path of a carrier."""
+    """A body on a path of a carrier, or the roller of one beside a path in a plane."""
     rng, base, Q = parts.rng, parts.base(), random_rotation(parts.rng)
     s = np.linspace(-3.0, 3.0, 13)
-    way = Q @ np.array([s, 0.3 * np.sin(s), 0.2 * np.cos(2.0 * s)])
+    beside: Scene = {}
+    if rng.random() < 0.5:
+        beside = {"radius": float(rng.uniform(0.2, 0.8)), "normal": (2.0 * Q[:, 2]).tolist()}
+    way = Q @ np.array([s, 0.3 * np.sin(s), 0.0 * s if beside else 0.2 * np.cos(2.0 * s)])
     tables = parts.scene.setdefault("tables", {})
     for axis, y in zip("xyz", way, strict=True):
         tables[f"{name}_{axis}"] = {"x": s.tolist(), "y": y.tolist(), "interpolation": "cubic"}
@@ -192,7 +195,7 @@ def curve(parts: Parts, name: str) -> None:
     parts.scene["joints"][f"j_{name}"] = {
         "type": "curve", "from": {"body": base, "at": rng.uniform(-1, 1, 3).tolist()},
         "to": {"body": name, "at": rng.uniform(-0.3, 0.3, 3).tolist()},
-        **{axis: f"{name}_{axis}" for axis in "xyz"},
+        **{axis: f"{name}_{axis}" for axis in "xyz"}, **beside,
         "initial": {"travel": float(rng.uniform(-1, 1)), "speed": float(rng.uniform(-1, 1))},
     }  # fmt: skip
 

@@ -59,6 +59,8 @@ def turned_path(tree: Tree, name: str, joint: dict[str, Any], Q: Array) -> None:
     if not all(isinstance(table, dict) and table.get("x") == tables[0]["x"] and "y" in table for table in tables):
         raise NotTold("a path of other tables")
     way = Q @ np.array([table["y"] for table in tables], dtype=float)
+    if "normal" in joint and np.linalg.det(Q) < 0.0:  # the left side is the right one in a mirror
+        joint["normal"] = [-x for x in joint["normal"]]
     for axis, table, y in zip("xyz", tables, way, strict=True):
         own = f"{name}_{axis}_turned"
         tree["tables"][own] = {**table, "y": y.tolist()}
@@ -88,6 +90,7 @@ def elements_in_units(tree: Tree, tell: Tell, mass: float, length: float, time: 
         if joint.get("type") == "curve":
             for axis in "xyz":
                 table_in_units(tree, joint.get(axis), length, length)
+            tell(joint, {"radius": LENGTH})
     for load in (tree.get("forces") or {}).values():
         if load.get("type") == "motor":
             tell(load, {"limit": MOMENT})

@@ -26,8 +26,8 @@ BODY = {
 POINT = {"position": (POLAR, LENGTH), "velocity": (POLAR, SPEED), "acceleration": (POLAR, ACCELERATION)}
 WRENCH = {"force": (POLAR, FORCE), "moment": (AXIAL, MOMENT)}
 JOINT = {
-    **WRENCH, "point": (POLAR, LENGTH), "radial": (SCALAR, FORCE), "tilting": (SCALAR, MOMENT),
-    "tension": (SCALAR, FORCE),
+    **WRENCH, "point": (POLAR, LENGTH), "contact_point": (POLAR, LENGTH), "radial": (SCALAR, FORCE),
+    "tilting": (SCALAR, MOMENT), "tension": (SCALAR, FORCE),
 }  # fmt: skip
 EFFECT = {"force": (POLAR, FORCE), "moment_orbital": (AXIAL, MOMENT), "moment_spin": (AXIAL, MOMENT)}
 SECTION = {

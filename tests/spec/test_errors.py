@@ -352,6 +352,13 @@ joints:
     ("sections.s: {body: a, at: p, normal: [1, 0, 0]}", "sections.s.body section-matter"),
     ("sections.s: {body: a, at: p, normal: [1, 0, 0], piece: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}", ""),
     ("sections.s: {body: a, from: p, to: q, count: 3}", "sections.s.body section-matter"),
+    # couplings
+    ("couplings.g: {type: gear, of: [shaft, shaft], at: {body: a}}",
+     "couplings.g.at unknown-point, couplings.g.of.1 coupled-joint"),
+    ("couplings.g: {type: gear, of: [shaft, shaft], at: x.p}",
+     "couplings.g.at unknown-body, couplings.g.of.1 coupled-joint"),
+    ("couplings.g: {type: gear, of: [shaft, shaft], at: a.none}",
+     "couplings.g.at unknown-point, couplings.g.of.1 coupled-joint"),
     # the rest
     ("analysis: {duration: 0}", "analysis.duration not-positive"),
     ("analysis: {duration: 1, samples: 1}", "analysis.samples times"),

@@ -90,6 +90,16 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
             "above 0",
         ),
         ("forces: {f: {type: force, on: bar, vector: [0, 0, 1]}}", "forces.f.on [end]", "bar.top, or bar.end?"),
+        (
+            "couplings: {c: {type: rope, through: [ground.O, bar.end], stiffness: 4e4}}",
+            "couplings.c.stiffness [unknown-key]",
+            "a spring: between two points",
+        ),
+        (
+            "couplings: {c: {type: rope, through: [ground.O, bar.end], c: 300}}",
+            "couplings.c.c [unknown-key]",
+            "behind one of its ends",
+        ),
         ("forces: {f: {type: force, on: bar.end, vector: 5}}", "forces.f.vector [wrong-kind]", "three components"),
     ],
 )

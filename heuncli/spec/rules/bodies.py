@@ -78,7 +78,7 @@ def not_positive(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
     for name, joint in draft.document.joints.items():
         path = ("joints", name)
-        yield from positive(path, joint, "length")
+        yield from positive(path, joint, "length", "radius")
         if isinstance(joint, f.Bearing) and joint.bearing is not None:
             yield from positive((*path, "bearing"), joint.bearing, "diameter", "width")
         if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:

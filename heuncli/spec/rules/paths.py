@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TYPE_CHECKING
 
 from heuncli import tolerances
 from heuncli.expressions.programs import TableFunction
 from heuncli.spec import format as f
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+
+if TYPE_CHECKING:
+    from heuncli.expressions.paths import Path
 
 AXES = ("x", "y", "z")
 PERIODIC = 2  # a table's kind (expressions/programs.py)
@@ -42,10 +46,42 @@ def faults(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
     if still is not None:
         hint = "a path goes on everywhere: a corner is rounded, an end is cut off before it"
         yield Violation(path, f"the path stands still at travel {still:.6g}: it has no direction there", hint, key=True)
+        return
+    if joint.radius is not None or joint.normal is not None:
+        yield from faults_of_roller(name, joint, planar, found)
     held = joint.initial.travel if joint.initial is not None else None
     if held is not None and not found.period and not found.first <= held <= found.last:
         message = f"travel {held:g} is off the path, which covers {found.first:.6g} to {found.last:.6g} m"
         yield Violation((*path, "initial", "travel"), message, "hold it on the path, or leave it out")
+
+
+def faults_of_roller(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
+    """What keeps a roller from a path: it lies in no plane, or it curves more than the roller can follow."""
+    at = ("joints", name)
+    if joint.radius is None:
+        yield Violation((*at, "normal"), "'normal' without 'radius'", "it tells on which side a roller is", key=True)
+        return
+    normal = joint.normal or ((0.0, 0.0, 1.0) if planar else None)
+    if normal is None:
+        hint = "normal: [0, 0, 1], say: of the path's plane; where it points to the eye, the roller is on the left"
+        yield Violation((*at, "radius"), "a roller beside a path needs its 'normal'", hint, key=True)
+        return
+    if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)) or joint.radius <= 0.0:  # told of any joint
+        return
+    from heuncli.expressions.beside import leaves_plane, tightest
+    from heuncli.expressions.paths import path_beside
+
+    if leaves_plane(path, normal):
+        where = (*at, "normal" if joint.normal is not None else "radius")
+        hint = "a roller runs beside a path in one plane: z: a number, and normal: [0, 0, 1]"
+        yield Violation(where, "the path does not lie in a plane across its normal", hint)
+        return
+    s, share = tightest(path_beside(path, joint.radius, normal))
+    if share > 1.0 - tolerances.STANDS_STILL:
+        s = s if abs(s) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0  # else it is rounding
+        curved = f"the path curves with {joint.radius / share:.4g} m at travel {s:.6g}, where the roller has "
+        hint = "a smaller roller, a path that bends less, or the other side of it: the opposite normal"
+        yield Violation((*at, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
 
 
 def ranges(name: str, tables: dict[str, TableFunction]) -> Violation | None:

@@ -82,7 +82,7 @@ def _joints(draft: DraftDocument) -> Iterator[Violation]:
         if kind.planar is None:
             yield Violation((*path, "type"), f"a joint of type {joint.type} has no place in a planar scene", OR_ELSE)
             continue
-        along_z = kind.turn is ABOUT_AXIS
+        along_z = kind.turn is ABOUT_AXIS or kind.follows_path
         for key in ("axis", "to_axis", "normal"):
             direction = getattr(joint, key, None)
             if direction is None or direction == (0.0, 0.0, 0.0):

@@ -34,6 +34,8 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
             for key, end in (("point", place.point), ("sheave", place.sheave)):
                 if end is not None:
                     yield ("couplings", name, "through", i, key), end
+        if isinstance(coupling, fc.GearEntry | fc.CamEntry) and coupling.at is not None:
+            yield ("couplings", name, "at"), coupling.at
     for name, wheel in document.rolling.items():
         yield ("rolling", name, "wheel"), wheel.wheel
         yield ("rolling", name, "on"), wheel.on

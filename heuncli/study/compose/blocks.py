@@ -129,6 +129,8 @@ def joint_block(load: JointLoads) -> JointBlock:
         block["tension"] = load.tension
     if load.joint.bearing is not None:
         block["pressure"] = np.sqrt(np.sum(load.force**2, axis=1)) / load.joint.bearing
+    if load.joint.path is not None and load.joint.path.radius:
+        block["contact_point"] = load.points.on_path(load.joint, load.point)
     return block
 
 

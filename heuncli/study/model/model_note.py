@@ -43,6 +43,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
         block["moved"] = list(scene.start.moved)
     if mechanism.planar:
         block["plane"] = "declared"
+    if mechanism.couplings:
+        block["couplings"] = len(mechanism.couplings)
     block["reasons"] = reasons(scene, block)
     if rolls(mechanism):
         from heuncli.redundancy.poses import freedoms_of_pose  # few scenes have wheels

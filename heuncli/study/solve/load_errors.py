@@ -34,6 +34,7 @@ from heuncli.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
+from heuncli.study.solve.motion_errors import TOLD, moved_quantities, turned_apart
 
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
@@ -154,7 +155,10 @@ class LoadErrors:
             self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
 
     def add_motion(self, states: BodyStates) -> None:
-        """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach."""
+        """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach.
+
+        And what is told of the bodies beside.
+        """
         count = len(states.omega) // len(self.asked)
 
         def apart(values: Array) -> Array:
@@ -170,6 +174,13 @@ class LoadErrors:
             ("m/s²", apart(states.a_centre) + (turning + centripetal) * self.reaches),
         ):
             self.extent("motion", unit).differ(difference.max(axis=1), self.before)
+        if "motion" in self.setup.asked.reports:
+            turned, vectors = turned_apart(states.R, count)
+            self.extent("attitudes", "1").differ(turned, self.before)
+            self.extent("rodrigues", "1").differ(vectors[self.asked], self.before[self.asked])
+            none = np.zeros(len(states.R))
+            for unit, values, rounding in moved_quantities(self.setup.scene.mechanism, states, self.setup.about):
+                self.take(("motion", unit), values, rounding, none)
 
     @cached_property
     def reaches(self) -> Array:
@@ -266,7 +277,7 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in ("motion", "forces")}
+        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces")}
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):

@@ -42,7 +42,7 @@ analysis: {type: state}
 """
 
 
-def runs(x: str, z: str, next_: str = "") -> str:
+def bead_runs(x: str, z: str, next_: str = "") -> str:
     """A bead on a path by two tables."""
     try:
         solve(load("bead.yaml", text=PATH.replace("X,", f"{x},").replace("Z,", f"{z},").replace("NEXT", next_)))
@@ -54,7 +54,7 @@ def runs(x: str, z: str, next_: str = "") -> str:
 def slow(slope: float) -> str:
     """On (s^2, slope s) r' is least in the middle, `slope`, where |r'| at the ends is 2: a share of slope / 2."""
     z = f"x: [-1, 0, 1], y: [{-2.0 * slope!r}, 0, {2.0 * slope!r}]"
-    return runs("x: [-1, 0, 1], y: [1, 0, 1]", z, ", initial: {travel: 0.5}")
+    return bead_runs("x: [-1, 0, 1], y: [1, 0, 1]", z, ", initial: {travel: 0.5}")
 
 
 def touches(apart: float) -> str:
@@ -62,7 +62,7 @@ def touches(apart: float) -> str:
     s = [-1.0, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 1.0]
     half = 0.5 * apart * REACH
     x, z = [v**3 - v for v in s], [v * v - 1.0 + half * v for v in s]
-    return runs(f"x: {s}, y: {x}", f"x: {s}, y: {z}")
+    return bead_runs(f"x: {s}, y: {x}", f"x: {s}, y: {z}")
 
 
 REACH = 1.0  # of that path: |r| is 1 in the middle, where z = -1
@@ -127,7 +127,7 @@ analysis: {duration: 1, samples: 2}
 """
 
 
-def runs(text: str) -> str:
+def roped(text: str) -> str:
     """What a scene with a rope ends as: refused, warned of, or fine."""
     try:
         results = solve(load("rope.yaml", text=text)).results
@@ -138,12 +138,12 @@ def runs(text: str) -> str:
 
 def swung(angle: float) -> str:
     """A rope that leaves its sheave's plane by an angle: the way across the axis is 3 m."""
-    return runs(JIB.replace("SIDE", repr(3.0 * math.tan(angle))))
+    return roped(JIB.replace("SIDE", repr(3.0 * math.tan(angle))))
 
 
 def lifted(angle: float) -> str:
     """The end of a rope is lifted until its strand rises by an angle, beyond where it lies on the sheave."""
-    return runs(ROUND.replace("HEIGHT", repr((0.1 + math.sin(angle)) / math.cos(angle))))
+    return roped(ROUND.replace("HEIGHT", repr((0.1 + math.sin(angle)) / math.cos(angle))))
 
 
 ROPES = Part(
@@ -151,7 +151,7 @@ ROPES = Part(
     rows=(
         Row("FLEET_ANGLE", swung, "warned of", "refused: rope-off-sheave"),
         Row("FLEET_SEEN", swung, "fine", "warned of"),
-        Row("ASKEW", lambda x: runs(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
+        Row("ASKEW", lambda x: roped(TWO.replace("TILT", repr(x))), "fine", "refused: rope-off-sheave"),
         Row("OFF_SHEAVE", lifted, "fine", "refused: rope-off-sheave"),
     ),
 )

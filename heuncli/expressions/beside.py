@@ -1,0 +1,122 @@
+"""Rollers beside paths: where the centre of one runs, how far it gets from there, and whether it can follow at all.
+
+    p = r + R n,  n = N × r'/|r'|,  p' = (1 - k) r',  k = κ R,  κ = N · (r' × r'')/|r'|³    N normal to the path's plane
+    k' = R (a' - 3 a r'·r''/|r'|²)/|r'|³,  a = N · (r' × r''),  a' = N · (r' × r''')
+Where k = 1 the path curves as the roller does, and beyond the roller would touch elsewhere: 1 - k > 0 is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Protocol
+
+import numpy as np
+
+from heuncli import tolerances
+from heuncli.results import Array
+
+EVEN = 0.1  # of |r'|: by how much it may change in a stretch of which bounds are told
+HALVED = 40  # times at most
+
+
+class Track(Protocol):
+    """What is asked of a path (paths.py) beside which a roller runs."""
+
+    @property
+    def knots(self) -> Array: ...
+    @property
+    def coefficients(self) -> Array: ...
+    @property
+    def radius(self) -> float: ...
+    @property
+    def normal(self) -> Array: ...
+    @property
+    def track_greatest(self) -> tuple[float, float, float]: ...
+    def track(self, s: Array | float) -> tuple[Array, Array, Array, Array]: ...
+
+
+def left(normal: Array, slope: Array) -> Array:
+    """The unit vector n to the left of a path that goes on along slopes (..., 3), seen so that N points here."""
+    across = np.cross(normal, slope)
+    return np.asarray(across / np.sqrt(np.sum(slope * slope, axis=-1))[..., None])
+
+
+def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
+    """Place, slope and bend p, p', p'' of the centre by those of the path and r''', (..., 3) each."""
+    r, slope, bend, twist = track
+    b = np.sum(slope * slope, axis=-1)
+    a, a1 = np.cross(slope, bend) @ N, np.cross(slope, twist) @ N
+    c = R / (b * np.sqrt(b))
+    along = (1.0 - c * a)[..., None]
+    along1 = (-c * (a1 - 3.0 * a * np.sum(slope * bend, axis=-1) / b))[..., None]
+    return r + R * left(N, slope), along * slope, along * bend + along1 * slope
+
+
+def bounds(path: Track) -> tuple[float, float]:
+    """Bounds of |p'| and |p''| over all of the path, by stretches in which |r'| is nearly even."""
+    middle, half = stretches(path)
+    _, slope, bend, twist = (np.sqrt(np.sum(x * x, axis=-1)) for x in path.track(middle))
+    B = bend + twist * half
+    low, high = slope - B * half, slope + B * half
+    k = path.radius * B / low**2
+    k1 = path.radius * (twist / low**2 + 3.0 * B * B / low**3)
+    return float(np.max((1.0 + k) * high)), float(np.max((1.0 + k) * B + k1 * high))
+
+
+def stretches(path: Track) -> tuple[Array, Array]:
+    """Middles and half lengths of stretches that cover the path, each within a piece."""
+    middle, half = 0.5 * (path.knots[1:] + path.knots[:-1]), 0.5 * np.diff(path.knots)
+    done: list[tuple[Array, Array]] = []
+    for _ in range(HALVED):
+        _, slope, bend, twist = (np.sqrt(np.sum(x * x, axis=-1)) for x in path.track(middle))
+        even = (bend + twist * half) * half <= EVEN * slope
+        done.append((middle[even], half[even]))
+        middle, half = middle[~even], 0.5 * half[~even]
+        if not len(middle):
+            break
+        middle, half = np.concatenate([middle - half, middle + half]), np.concatenate([half, half])
+    else:
+        raise AssertionError("a path that stands still")  # which its rule refuses
+    return np.concatenate([m for m, _ in done]), np.concatenate([h for _, h in done])
+
+
+def tightest(path: Track) -> tuple[float, float]:
+    """Where κ R is largest on the path, and how large: at an end of a piece, or where k' = 0, of degree 5 in it."""
+    s = np.concatenate([path.knots, *(turns(path, i) for i in range(len(path.coefficients)))])
+    _, slope, bend, _ = path.track(s)
+    k = path.radius * (np.cross(slope, bend) @ path.normal) / np.sum(slope * slope, axis=-1) ** 1.5
+    i = int(np.argmax(k))
+    return float(s[i]), float(k[i])
+
+
+def turns(path: Track, i: int) -> Array:
+    """The parameters within a piece at which the path's curvature is extreme."""
+    length = float(path.knots[i + 1] - path.knots[i])
+    c = path.coefficients[i] * (length ** np.arange(4.0))[:, None]  # over 0 to 1
+    slope = [np.array([3.0 * c3, 2.0 * c2, c1]) for c1, c2, c3 in c[1:].T]
+    bend = [np.polyder(x) for x in slope]
+    a: Array = np.zeros(1)
+    for j, n in enumerate(path.normal):
+        k, m = (j + 1) % 3, (j + 2) % 3
+        a = np.polyadd(a, n * np.polysub(np.polymul(slope[k], bend[m]), np.polymul(slope[m], bend[k])))
+    b: Array = np.sum([np.convolve(x, x) for x in slope], axis=0)
+    half: Array = np.sum([np.convolve(x, x1) for x, x1 in zip(slope, bend, strict=True)], axis=0)
+    found = np.roots(np.polysub(np.polymul(np.polyder(a), b), 3.0 * np.polymul(a, half)))
+    inside = found[(found.real > 0.0) & (found.real < 1.0)].real  # a pair that rounding made is looked at, too
+    return np.asarray(path.knots[i] + length * inside)
+
+
+def leaves_plane(path: Track, normal: Sequence[float]) -> bool:
+    """Whether a path goes on anywhere out of the plane across a normal (3,), of any length."""
+    N = np.asarray(normal, dtype=float)
+    steps = np.diff(path.knots)[:, None] ** np.arange(3.0) * np.array([1.0, 2.0, 3.0])
+    out = np.abs(path.coefficients[:, 1:] @ N) * steps
+    return bool(np.max(out) > tolerances.TYPED_AXES * path.track_greatest[1] * np.sqrt(N @ N))
+
+
+def flat(coefficients: Array, N: Array) -> Array:
+    """The pieces of a path without what leaves the plane across N in which it begins."""
+    begun = np.zeros_like(coefficients)
+    begun[:, 0] = coefficients[0, 0]
+    away = coefficients - begun
+    return np.asarray(begun + away - (away @ N)[..., None] * N)
