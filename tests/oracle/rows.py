@@ -13,6 +13,7 @@ so that J V̇ + γ = given acceleration, and a multiplier λ is the force λf wi
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,7 @@ import numpy as np
 from tests.oracle import cams, gears
 from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
+from tests.oracle.sums import sums
 from tests.oracle.turns import Array, across, cross, turn_vector
 from tests.oracle.wheels import lines
 
@@ -91,9 +93,16 @@ def joint_rows(joint: Joint, state: State, t: float) -> list[Row]:
     given = float(first(t)), float(second(t))
     if quantity == "length":  # the rod's own row, its length now moving
         return [row._replace(drive=True, rate=given[0], acceleration=given[1]) for row in rows]
+    along = coordinate_row(joint, state, quantity == "angle")
+    return [*rows, along._replace(rate=given[0], acceleration=given[1])]
+
+
+def coordinate_row(joint: Joint, state: State, turns: bool) -> Row:
+    """The row of a joint's angle, or of its travel."""
     ((d, d_rate),) = directions("along", joint, state)
-    wrench = (zero, zero, d, d_rate) if quantity == "angle" else (d, d_rate, zero, zero)
-    return [*rows, Row(joint.name, True, wrench[0], wrench[1], wrench[2], wrench[3], *given)]
+    zero = np.zeros(3)
+    wrench = (zero, zero, d, d_rate) if turns else (d, d_rate, zero, zero)
+    return Row(joint.name, True, *wrench, 0.0, 0.0)
 
 
 class Rows(NamedTuple):
@@ -107,38 +116,22 @@ class Rows(NamedTuple):
 
 
 def assemble(scene: Model, state: State, t: float) -> Rows:
-    """The rows of all joints of a scene, and of its wheels, gears and cams."""
-    place = {name: 6 * k for k, name in enumerate(scene.names)}
+    """The rows of all joints of a scene, and of its sums, wheels, gears and cams."""
     rows: list[Row] = []
     J: list[Array] = []
     gamma: list[float] = []
     zero = np.zeros(3)
     for joint in scene.joints:
-        A, B = placed(state, joint.a.body), placed(state, joint.b.body)
-        center = {
-            e.body: placed(state, e.body).point(scene.masses[e.body].center) if e.body != GROUND else np.zeros(3)
-            for e in (joint.a, joint.b)
-        }
-        v_a = A.speed(scene.masses[joint.a.body].center) if joint.a.body != GROUND else np.zeros(3)
-        P, P_rate = B.point(joint.b.point), B.speed(joint.b.point)
-        u, w = P - center[joint.b.body], P - center[joint.a.body]
-        s_a, s_b = A.angular_velocity, B.angular_velocity
-        bias = cross(s_b, cross(s_b, u)) - cross(s_a, P_rate - v_a)
-        slip, turning = P_rate - v_a - cross(s_a, w), s_b - s_a
-        for row in joint_rows(joint, state, t):
-            line = np.zeros(6 * len(scene.names))
-            for body, arm, sign in ((joint.b.body, u, 1.0), (joint.a.body, w, -1.0)):
-                if body != GROUND:
-                    k = place[body]
-                    line[k : k + 3] += sign * row.force
-                    line[k + 3 : k + 6] += sign * (cross(arm, row.force) + row.moment)
+        own = joint_rows(joint, state, t)
+        for row, (line, bias) in zip(own, equations(scene, joint, state, own), strict=True):
             rows.append(row)
             J.append(line)
-            gamma.append(float(row.force @ bias + row.force_rate @ slip + row.moment_rate @ turning))
-    for name, e, line, bias_of in (*lines(scene, state), *gears.lines(scene, state), *cams.lines(scene, state)):
+            gamma.append(bias)
+    others = (*sums_of(scene, state), *lines(scene, state), *gears.lines(scene, state), *cams.lines(scene, state))
+    for name, e, line, bias in others:
         rows.append(Row(name, False, e, zero, zero, zero, 0.0, 0.0))
         J.append(line)
-        gamma.append(bias_of)
+        gamma.append(bias)
     shape = (len(rows), 6 * len(scene.names))
     return Rows(
         np.array(J).reshape(shape),
@@ -147,6 +140,40 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
         np.array([r.acceleration for r in rows]),
         rows,
     )
+
+
+def equations(scene: Model, joint: Joint, state: State, rows: Iterable[Row]) -> Iterator[tuple[Array, float]]:
+    """J (6n,) and γ of rows of a joint."""
+    place = {name: 6 * k for k, name in enumerate(scene.names)}
+    A, B = placed(state, joint.a.body), placed(state, joint.b.body)
+    center = {
+        e.body: placed(state, e.body).point(scene.masses[e.body].center) if e.body != GROUND else np.zeros(3)
+        for e in (joint.a, joint.b)
+    }
+    v_a = A.speed(scene.masses[joint.a.body].center) if joint.a.body != GROUND else np.zeros(3)
+    P, P_rate = B.point(joint.b.point), B.speed(joint.b.point)
+    u, w = P - center[joint.b.body], P - center[joint.a.body]
+    s_a, s_b = A.angular_velocity, B.angular_velocity
+    bias = cross(s_b, cross(s_b, u)) - cross(s_a, P_rate - v_a)
+    slip, turning = P_rate - v_a - cross(s_a, w), s_b - s_a
+    for row in rows:
+        line = np.zeros(6 * len(scene.names))
+        for body, arm, sign in ((joint.b.body, u, 1.0), (joint.a.body, w, -1.0)):
+            if body != GROUND:
+                k = place[body]
+                line[k : k + 3] += sign * row.force
+                line[k + 3 : k + 6] += sign * (cross(arm, row.force) + row.moment)
+        yield line, float(row.force @ bias + row.force_rate @ slip + row.moment_rate @ turning)
+
+
+def sums_of(scene: Model, state: State) -> Iterator[tuple[str, Array, Array, float]]:
+    """Of sums of coordinates: name, no direction, J (6n,), γ."""
+    for name, terms in sums(scene).items():
+        line, bias = np.zeros(6 * len(scene.names)), 0.0
+        for joint, turns, factor in terms:
+            ((own, own_bias),) = equations(scene, joint, state, [coordinate_row(joint, state, turns)])
+            line, bias = line + factor * own, bias + factor * own_bias
+        yield name, np.zeros(3), line, bias
 
 
 def velocities(scene: Model, state: State) -> Array:
