@@ -29,6 +29,7 @@ NEARLY_SINGULAR = 1e-6  # relative singular value: reactions err by gap / value,
 
 # -- couplings: what of a drawing decides whether gears fit
 TYPED_AXES = 1e-9  # sine between axes that are parallel, or at right angles, by what is typed or computed of it
+PARTED = 1e-9  # of the largest rate: what several drives of a coupling may leave of it, far above rounding
 STANDS_STILL = 1e-6  # of the greatest slope of a path: where it is less the path has no direction to six digits
 SAME_PLACE = 1e-9  # of a path's reach: branches nearer than that are at one place, by what is typed or assembled of it
 TYPED_POINT = 1e-6  # of the distance it is measured by: points of a drawing are typed with six digits and more
@@ -162,7 +163,6 @@ UPRIGHT = 1e-9  # 1 - cosine of a body's z axis to the world's: 4.5e-5 rad, as t
 
 # -- loads that are none
 SET_GOING = 1e-10  # of the largest load on a body over its mass: ten times NO_LOAD, which a sweep leaves
-PARTED = 1e-9  # of the largest rate: what several drives of a coupling may leave of it, far above rounding
 NO_FORCE = 1e-12  # of the largest load it is summed from: hundreds of roundings; it has no line of action
 NO_LOAD = 1e-11  # of the largest m (a - g): what a sweep leaves at six freedoms that nothing holds
 NO_ENERGY = 1e-20  # of the weight's work over the size: squares of speeds of 1e-10, as OPEN_RATE lets pass

@@ -27,7 +27,7 @@ def failure(progress: Progress, code: int) -> SolveError:
         return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
     name, message, hint = TROUBLE[code]
     if name == "closure-lost":
-        if known := ways_ended(progress) or turned_bushings(progress):
+        if known := ways_ended(progress) or turned_bushings(progress) or loads_ended(progress):
             return SolveError(*known)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
@@ -46,6 +46,15 @@ def ways_ended(progress: Progress) -> list[Problem]:
     there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
     ended = mechanism, t, progress.last * 2.0**-FARTHEST, there
     return paths_left(*ended) + lifts_left(*ended)
+
+
+def loads_ended(progress: Progress) -> list[Problem]:
+    """The problems of loads that lose their values there while couplings are held: their rows cannot answer them."""
+    t, scene = progress.t, progress.scene
+    if not scene.layout.mechanism.couplings:
+        return []
+    there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
+    return without_value(scene.layout.mechanism, t, progress.last, there)
 
 
 def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:
