@@ -376,7 +376,7 @@ class _Builder:
         if restitution is not None:
             self.contacts.append(Contact(name, True, owner, row, 1, restitution))
         opens = len(self.contacts) if restitution is not None else 0
-        self.one_sided.append(ContactRow(row, 1, opens))
+        self.one_sided.append(ContactRow(row, 1, opens, freedom=-1))
 
     def _latches(self) -> None:
         """The rows of all latches."""

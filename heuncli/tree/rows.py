@@ -166,7 +166,7 @@ class ContactRow:
     row: int
     sense: int
     opens: int
-    freedom: int = -1
+    freedom: int
     held_at: int = 0
 
 

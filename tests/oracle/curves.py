@@ -44,11 +44,13 @@ class Track(NamedTuple):
 
 
 def track(scene: Any, spec: Any) -> Track | None:
-    """That of a joint's entry, whose tables share their points; None of other kinds."""
+    """That of a joint's entry, whose tables share their points, what has none staying at 0; None of other kinds."""
     if spec["type"] != "curve":
         return None
-    tables = [scene["tables"][spec[axis]] for axis in "xyz"]
-    return Track(CubicSpline(tables[0]["x"], np.array([table["y"] for table in tables]).T))
+    tables = {axis: scene["tables"][spec[axis]] for axis in "xyz" if axis in spec}
+    s = next(iter(tables.values()))["x"]
+    r = [tables[axis]["y"] if axis in tables else [0.0] * len(s) for axis in "xyz"]
+    return Track(CubicSpline(s, np.array(r).T))
 
 
 def seen(A: Any, a: Array, point: Array, speed: Array) -> tuple[Array, Array]:

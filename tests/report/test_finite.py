@@ -48,6 +48,7 @@ gravity: [0, -9.81, 0]
 tables:
   lift:
     {x: [0, 90 deg, 180 deg, 270 deg, 360 deg], y: [0.1, 0.11, 0.1, 0.09, 0.1], interpolation: cubic, period: 360 deg}
+  ramp: {x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}
 ground: {points: {O: [0, 0, 0], A: [0.5, 0, 0], B: [2, 0, 0], C: [2.3, 0, 0], D: [-1, 0, 0], E: [0, 2, 0]}}
 bodies:
   disc: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}
@@ -59,7 +60,9 @@ bodies:
   shaft: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0], end: [0.5, 0, 0]}}
   bent: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [0.5, 2, 0], points: {o: [0, 0, 0]}}
   wheel: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], position: [5, 0.5, 0], points: {o: [0, 0, 0]}}
+  roller: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {o: [0, 0, 0]}}
 joints:
+  track: {type: curve, from: ground.O, to: roller.o, x: ramp, radius: 0.1, normal: [0, 0, 1], initial: {travel: 1}}
   cam: {type: pin, from: ground.O, to: disc.o, axis: [0, 0, 1], initial: {rate: 1}}
   guide: {type: slide, from: ground.O, to: tappet.face, axis: [0, 1, 0]}
   other: {type: pin, from: ground.A, to: pulley.o, axis: [0, 0, 1]}
