@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from heuncli.errors import SolveError
 from tests.shared.scenes import solved
 
 G = 9.81
@@ -342,3 +343,32 @@ analysis: {{type: state}}
     (terms, value), *_ = sums
     assert 2 * terms["couplings.two.tension"] == pytest.approx(terms["couplings.one.tension"])
     assert value / terms["couplings.two.tension"] == pytest.approx(5 * G, rel=1e-9)
+
+
+def roped_cage(g: float, analysis: str) -> str:
+    """A cage on a rope as long as it is drawn, on rails."""
+    return f"""
+heun: 1
+space: planar
+gravity: [0, {g}]
+ground: {{points: {{O: [0, 12], b: [0, 0]}}}}
+bodies: {{cage: {{mass: 9, center: [0, 0], inertia: 5, points: {{top: [0, 0]}}}}}}
+joints: {{rails: {{type: slide, from: ground.b, to: cage.top, axis: [0, 1], initial: {{travel: 3}}}}}}
+couplings: {{hoist: {{type: rope, through: [ground.O, cage.top], tension_only: true}}}}
+{analysis}
+"""
+
+
+@pytest.mark.parametrize("analysis", ["analysis: {type: state}", "analysis: {duration: 1, samples: 3}"])
+@pytest.mark.parametrize("g", [-9.81, 9.81])
+def test_a_rope_that_would_have_to_push_is_told(g: float, analysis: str) -> None:
+    """Of a cage that falls upward, at one instant and in a motion; not of one that hangs."""
+    told = [line for line in solved(roped_cage(g, analysis)).warnings if "rope hoist would have to push" in line]
+    assert len(told) == (g > 0.0)
+
+
+def test_a_rope_that_a_blow_would_have_to_push_is_told_by_its_place() -> None:
+    blow = "impulses: {b: {on: cage.top, vector: [0, 5], time: 0}}\nanalysis: {duration: 1, samples: 3}"
+    with pytest.raises(SolveError, match="the rope hoist would have to push") as refused:
+        solved(roped_cage(-9.81, blow))
+    assert refused.value.problems[0].about == "couplings.hoist"

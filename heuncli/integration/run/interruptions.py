@@ -15,6 +15,7 @@ from heuncli.integration.contacts.blows import GivenBlow, Jump, schedule, strike
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.run.progress import Progress
 from heuncli.integration.segments import Segment
+from heuncli.mechanism.model import Mechanism
 from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
@@ -50,7 +51,7 @@ class Interruptions:
             rope = pushing(self.scene.layout, jump)
             if rope is not None and reached > 0.0:
                 return rope
-            require_pull(rope)
+            require_pull(self.scene.layout.mechanism, rope)
             self.take(jump)
         return None
 
@@ -134,7 +135,7 @@ def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
     for one in given:
         jump = contacts.meet(one, state, t, None) if contacts is not None else strike(evaluator, one, state, t)
         if jump is not None:
-            require_pull(pushing(evaluator.layout, jump))
+            require_pull(evaluator.layout.mechanism, pushing(evaluator.layout, jump))
             return (jump,)
     return ()
 
@@ -164,9 +165,11 @@ def ends_pushed(layout: Layout, r: int, owner: int) -> bool:
     return row.tension_only and row.restitution is None
 
 
-def require_pull(rope: str | None) -> None:
-    """Raise SolveError for a rope that would have to push in a blow at the start."""
+def require_pull(mechanism: Mechanism, rope: str | None) -> None:
+    """Raise SolveError for a rope, of a joint or a coupling, that would have to push in a blow at the start."""
     if rope is not None:
-        message = f"in the blow at t = 0 s the rod {rope} would have to push (tension_only)"
+        coupled = rope in {coupling.name for coupling in mechanism.couplings}
+        what, where = ("rope", "couplings") if coupled else ("rod", "joints")
+        message = f"in the blow at t = 0 s the {what} {rope} would have to push (tension_only)"
         hint = "with restitution: 0 (to 1) it goes slack, and catches again"
-        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"joints.{rope}"))
+        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"{where}.{rope}"))

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from heuncli import tolerances
 from heuncli.integration.diagnosis.off_sheaves import slanting
+from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.mechanism.model import Mechanism
 from heuncli.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
@@ -94,15 +95,25 @@ def would_let_go(mechanism: Mechanism, name: str) -> str:
     kinds = {coupling.name: coupling.given.type for coupling in mechanism.couplings}
     if kinds.get(name) == "cam":
         return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
-    return f"the rod {name} would have to push (tension_only)"
+    return f"the {kinds.get(name, 'rod')} {name} would have to push (tension_only)"
+
+
+def pushes(rope: CouplingLoads) -> bool:
+    """Whether the rope of a coupling pushes at the one instant, before or behind any of its sheaves."""
+    return any(
+        row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=True)
+    )
 
 
 def of_ropes(setup: Setup, recovery: Recovery, joints: Mapping[str, JointBlock]) -> list[str]:
     """Ropes that would have to push, and followers that would lift off, at the one instant of a state."""
-    ropes = [j.name for j in setup.scene.mechanism.joints if j.tension_only and j.name in joints]
+    mechanism = setup.scene.mechanism
+    rods = [
+        j.name for j in mechanism.joints if j.tension_only and j.name in joints and joints[j.name]["tension"][0] < 0.0
+    ]
+    ropes = [own.coupling.name for own in recovery.couplings if own.coupling.given.type == "rope" and pushes(own)]
     cams = [own for own in recovery.couplings if own.carries == "contact" and own.coupling.rows[0].tension_only]
-    told = [f"the rod {name} would have to push (tension_only)" for name in ropes if joints[name]["tension"][0] < 0.0]
-    return told + [
+    return [would_let_go(mechanism, name) for name in (*rods, *ropes)] + [
         f"the follower of cam {own.coupling.name} lifts off: the cam would have to pull"
         for own in cams
         if own.carried[0] < 0.0
