@@ -137,6 +137,8 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
     "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
+    "efficiency": "what a thread or gear loses is a load beside it: forces: {rubs: {type: friction, joint: spin, "
+    "torque: 0.3 N m}}",
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",

@@ -86,4 +86,4 @@ def stacked(blocks: Sequence[Mapping[str, Any]]) -> Any:
     kinds = [k for k in ("bodies", "foundation", "joints", "sections") if k in blocks[0]]
     shown = {k: joined([b[k] for b in blocks], k) for k in kinds}
     bodies = {b: {JUMPS.get(k, k): v for k, v in block.items()} for b, block in shown["bodies"].items()}
-    return SimpleNamespace(**{"sections": {}, "joints": {}, **shown, "bodies": bodies})
+    return SimpleNamespace(**{"sections": {}, "joints": {}, "couplings": {}, **shown, "bodies": bodies})
