@@ -40,7 +40,7 @@ KEY_WORDS = {
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
-    "rho": "density", "axle": "axis", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
+    "rho": "density", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
