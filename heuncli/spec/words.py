@@ -102,6 +102,7 @@ FORMS = {  # what the values of some keys look like
     "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
     "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
 }  # fmt: skip
+JOINTS = "a list of joints: [first, second]"  # what `of` is of a coupling
 PLACES = frozenset(
     {"from", "to", "center", "position", "at"}
 )  # lists of coordinates, in the body's axes or the world's
@@ -119,6 +120,11 @@ MISSING = {  # what a key is that must be there
     "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
     "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
     "curve": "its torque over its speed: a table, or an expression of rate",
+    "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the pull of each strand at rest, in N",
+    "lift": "the name of a table: the lift over the disc's angle", "contact": "roller, flat or point, as its follower has",
+    "set": "as {n: 1500 rpm}", "file": "the file with its triangles: rod.stl", "diameter": "in m, or with a unit: 20 mm",
+    "factors": "a number for each joint of of, as [1, 2]", "lead": "the travel for a turn, as 5 mm",
+    "through": "points and sheaves in order: [ground.A, cage.top]",
     "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
