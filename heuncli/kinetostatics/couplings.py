@@ -17,6 +17,7 @@ from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
+from heuncli.spec.couplings import Screw
 from heuncli.tree.layout import Layout
 
 
@@ -83,12 +84,22 @@ class PartLoad:
 
 @record
 class CouplingLoads:
-    """What a coupling exerts; multipliers: of its rows, (..., n_t) each."""
+    """What a coupling exerts; multipliers: of its rows, (..., n_t) each.
+
+    friction: of a thread, by what its row carries. It stands among the applied loads, and is told here with the rest.
+    """
 
     coupling: Coupling
     rows: tuple[int, ...]
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
+    friction: Action | None = None
+
+    def rubbing(self, applied: Sequence[Action]) -> CouplingLoads:
+        """With its friction, which is among the applied loads by its name."""
+        if not isinstance(self.coupling.given, Screw) or self.coupling.given.friction is None:
+            return self
+        return replace(self, friction=next((own for own in applied if own.name == self.coupling.name), None))
 
     @property
     def carries(self) -> str:
@@ -138,6 +149,9 @@ class CouplingLoads:
             for body, place, own, turning in part.on_both:
                 at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
                 found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
+        for end, own, turning in self.friction.on_bodies() if self.friction is not None else ():
+            at, force, moment = found[end.body]
+            found[end.body] = at, force + own, moment + turning + cross_rows(end.position - at, own)
         return found
 
 

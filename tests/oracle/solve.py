@@ -20,6 +20,7 @@ import numpy as np
 from tests.oracle.loads import Push, from_outside, gathered, pushes
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.rows import Rows, assemble
+from tests.oracle.threads import rubbing, threads
 from tests.oracle.turns import Array, cross
 
 RANK = 1e-9  # singular values of the scaled J below this part of the largest count as zero
@@ -135,10 +136,23 @@ def solve(
     M; what that leaves is split by the first.
     """
     read = scene if isinstance(scene, Model) else model(scene)
-    loads = pushes(read, state, t)
     size = scene_length(read, state)
+    loads = acting(read, state, t, size)
     found = accelerations(read, state, t, loads, size)
     return answer(read, state, found, loads, size, about, stiffness, length)
+
+
+def acting(read: Model, state: State, t: float, size: float) -> dict[str, list[Push]]:
+    """All applied loads, and what rubs in threads by what these carry under them."""
+    given = pushes(read, state, t)
+
+    def multipliers(more: Mapping[str, list[Push]]) -> dict[str, float]:
+        found = accelerations(read, state, t, {**given, **more}, size)
+        rows = {row.joint: k for k, row in enumerate(found.rows.rows)}
+        assert not any(np.abs(found.self_stress[rows[name]]).max(initial=0.0) > OPEN for name in threads(read))
+        return {name: float(found.least[rows[name]]) for name in threads(read)}
+
+    return given | rubbing(read, state, multipliers)
 
 
 def answer(
