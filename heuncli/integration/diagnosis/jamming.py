@@ -36,7 +36,7 @@ def jammed(mechanism: Mechanism, found: int, row: int, t: float) -> Problem:
     if isinstance(load, ThreadLoad):
         hint = "a drive of the spindle or more inertia on it, as its motor's; a smaller coefficient, or a steeper lead"
         said = said.replace("the joint", "its flanks")
-        return Problem(code, f"at t = {t:.9g} s the friction of couplings.{load.name} rubs, and {said}", hint=hint)
+        return Problem(code, f"at t = {t:.9g} s the thread couplings.{load.name} rubs, and {said}", hint=hint)
     assert isinstance(load, JointLoad), load
     joint = mechanism.joints[load.joint].name
     return Problem(code, f"at t = {t:.9g} s forces.{load.name} rubs in joints.{joint}, and {said}", hint=hint)
