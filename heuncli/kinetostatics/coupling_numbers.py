@@ -104,6 +104,19 @@ def of_constant_velocity(loads: CouplingLoads) -> list[CoupledNumber]:
     return [CoupledNumber("torque", loads.multipliers[0] * np.sum(m * m, axis=-1), (0,), is_moment=True, linear=True)]
 
 
+def of_screw(loads: CouplingLoads) -> list[CoupledNumber]:
+    """Its thrust; with friction all of it, and the torque that this takes."""
+    if loads.friction is None:
+        return carried(loads)
+    from heuncli.kinetostatics.thread_friction import whole_load  # few scenes have it
+
+    force, torque = whole_load(loads)
+    return [
+        CoupledNumber("force", force, (0,), linear=True),
+        CoupledNumber("torque", torque, (0,), is_moment=True, linear=True),
+    ]
+
+
 NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
-    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity,
+    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity, "screw": of_screw,
 }  # fmt: skip

@@ -129,6 +129,7 @@ MISSING = {  # what a key is that must be there
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
+OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
 BALL_AND_CV = "a constant-velocity joint is a ball, and couplings: {NAME: {type: cv, joint: BALL, axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
@@ -143,8 +144,8 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
     "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
-    "efficiency": "what a thread or gear loses is a load beside it: forces: {rubs: {type: friction, joint: spin, "
-    "torque: 0.3 N m}}",
+    "efficiency": "what gears lose is a load beside them: forces: {rubs: {type: friction, joint: spin, "
+    "torque: 0.3 N m}}; a thread has a friction of its own",
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",

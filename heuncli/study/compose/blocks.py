@@ -55,8 +55,12 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
             if own.coupling.given.type in ("gear", "screw", "belt"):
                 from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
-                given = own.coupling.given
-                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried, struck)
+                given, block = own.coupling.given, shown["couplings"][own.coupling.name]
+                block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
+            if own.friction is not None:
+                from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
+
+                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 
