@@ -24,7 +24,9 @@ GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(5)  # what presses where a load rubs: nothing found, the joint's force or
+GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
+    5
+)  # what presses where a load rubs: nothing found, the joint's force or
 # parts of it, the multiplier of a coupling's row
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
 

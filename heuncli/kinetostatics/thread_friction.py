@@ -1,6 +1,7 @@
 """What a screw with friction carries in all, and what of the power that goes in comes out.
 
-    force = N - friction along the axis      torque = N lead / (2 pi) + friction about it       N: what the flanks press with
+    force = N - friction along the axis        torque = N lead / (2 pi) + friction about it
+N is what the flanks press with along the axis.
     force rise - torque = -loss / rate       rise = lead / (2 pi), the travel for a unit of turning
 Of the two powers, force rise rate INTO what slides and -torque rate INTO what turns, the one above zero comes out.
 """

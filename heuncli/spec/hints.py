@@ -65,7 +65,9 @@ def belonging(key: str, known: Collection[str]) -> str | None:
     if key in COORDINATES and "initial" in known:
         return f"the start of a coordinate is initial: {{{key}: ...}}"
     if "lead" in known and key in OF_THREADS:
-        return "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
+        return (
+            "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
+        )
     if "through" in known and (key in STRETCH or called(key, STRETCH)):
         return (
             "a rope keeps its length; what stretches is a spring: between two points in its place, "

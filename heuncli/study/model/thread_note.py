@@ -1,6 +1,6 @@
 """What a thread's friction makes of it, in a sentence: whether it is self-locking, and what comes out either way.
 
-    eta = tan(lambda) / tan(lambda + rho) of turning into thrust,   tan(lambda - rho) / tan(lambda) of thrust into turning
+eta = tan(lambda) / tan(lambda + rho) of turning into thrust,   tan(lambda - rho) / tan(lambda) of thrust into turning
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Iterator
 
 from heuncli.mechanism.model import Mechanism
 from heuncli.spec.couplings import Screw, ThreadFriction
-
 
 LOCKED = "self-locking"
 
