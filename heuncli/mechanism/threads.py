@@ -46,6 +46,8 @@ def screw_row(given: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], o
     counted = [Coordinate(x.joint, x.quantity, x.ratio * nut.sign) for x in nut.coordinates]
     counted += [Coordinate(x.joint, x.quantity, -by * x.ratio * spindle.sign) for x in spindle.coordinates]
     f, m = nut.sign * nut.axis, by * spindle.sign * spindle.axis
+    if spindle.along is not None:  # a spindle that slides takes its thread with it
+        counted.append(Coordinate(spindle.along.joint, "travel", -float(f @ spindle.axis) * spindle.along.ratio))
     return CoupledRow(mesh_parts(spindle.body, nut.body, carrier, spindle.point, f, m, counted))
 
 
