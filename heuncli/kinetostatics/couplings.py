@@ -145,7 +145,8 @@ class CouplingLoads:
     def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
         """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in sorted(self.parts, key=lambda own: not own.part.lies):  # of sheaves their centres come first
+        loading = (own for own in self.parts if not own.part.counts_alone)
+        for part in sorted(loading, key=lambda own: not own.part.lies):  # of sheaves their centres come first
             for body, place, own, turning in part.on_both:
                 at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
                 found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
@@ -197,5 +198,5 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
-        if not part.part.lies
+        if not (part.part.lies or part.part.counts_alone)
     ]
