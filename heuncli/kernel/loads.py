@@ -126,8 +126,8 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
     against the direction of the motion; in a thread the force that goes with its moment is added. Gives the power of
-    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on
-    no body (pressing.py).
+    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on no
+    body (pressing.py).
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION

@@ -149,7 +149,8 @@ class CouplingLoads:
         beside: what it exerts besides, as the pretension of a belt.
         """
         found: dict[int, tuple[Array, Array, Array]] = {}
-        parts = sorted(self.parts, key=lambda own: not own.part.lies)  # of sheaves their centres come first
+        loading = (own for own in self.parts if not own.part.counts_alone)
+        parts = sorted(loading, key=lambda own: not own.part.lies)  # of sheaves their centres come first
         rubs = () if self.friction is None else (self.friction,)
         held = (on for part in parts for on in part.on_both)
         given = ((end.body, end.position, F, M) for action in (*beside, *rubs) for end, F, M in action.on_bodies())
@@ -201,5 +202,5 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
-        if not part.part.lies
+        if not (part.part.lies or part.part.counts_alone)
     ]

@@ -193,10 +193,7 @@ def free_to_turn(mechanism: Mechanism) -> dict[int, list[Array]]:
         elif isinstance(load, PairLoad):
             acts(load.a, load.p)
             acts(load.b, load.q)
-        elif isinstance(load, BushingLoad):
-            acts(load.a, None)
-            acts(load.b, None)
-        elif isinstance(load, ThreadLoad):
+        elif isinstance(load, BushingLoad | ThreadLoad):
             acts(load.a, None)
             acts(load.b, None)
         elif "turning" in JOINTS[mechanism.joints[load.joint].kind].motions:

@@ -129,6 +129,21 @@ def test_screw_between_a_spindle_and_a_nut(order: list[str]) -> None:
     near(found.joints["n"]["moment"][0][2], -thrust * by, thrust, ROUNDING)
 
 
+@pytest.mark.parametrize("reverse", [1, -1])
+def test_a_spindle_that_slides_takes_its_thread_with_it(reverse: int) -> None:
+    """x_n - x_s = p phi: N (1/m_n + 1/m_s + p^2/J) = p T/J; both slide, and none of it is lost in half a second."""
+    scene = screw(lead="1 m") | {"gravity": [0, 0, 0], "analysis": {"duration": 0.5, "samples": 3}}
+    a, b = ("ground.A", "spindle.c")[::reverse]
+    scene["joints"]["p"] = {"type": "cylinder", "from": a, "to": b, "axis": [0, 0, 1]}
+    scene["forces"] = {"motor": {"type": "couple", "on": "spindle", "vector": [0, 0, 3]}}
+    scene["bodies"]["spindle"]["mass"] = 5.0
+    found, p = solved(scene), reverse / math.tau
+    thrust = 3 * p / 0.02 / (1 / 20 + 1 / 5 + p * p / 0.02)
+    near(found.couplings["thread"]["force"], thrust, abs(thrust), 1e-9)
+    for body, mass in (("nut", 20), ("spindle", -5)):
+        near(found.bodies[body]["position"][-1][2], thrust / mass * 0.125, 1.0, 1e-9)
+
+
 def test_screw_in_a_cylinder() -> None:
     scene = screw(of=["n"], lead="1 m")
     del scene["bodies"]["spindle"], scene["joints"]["p"]

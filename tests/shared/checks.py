@@ -116,7 +116,7 @@ def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
 
 
 def same_grounded(c: Case, k: int, name: str, beside: Wrench, tolerance: float) -> None:
-    """What a coupling puts on the ground, with its loads beside what it holds; what a self-stress has a share in is nan."""
+    """What a coupling puts on the ground, with its loads beside what it holds; what is open in it is nan."""
     own, o, F = c.found.foundation["elements"][name], c.oracle[k], c.force[k]
     point = own["point"][k]
     wrench, share = o.grounded[name].about(point)
