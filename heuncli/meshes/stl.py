@@ -51,7 +51,8 @@ def _soup(places: Array) -> Soup:
 def _as_text(content: bytes) -> Array:
     """The corners (m, 3, 3) of a file that is text; of several solids all."""
     begin, end = content.find(b"\n"), content.rfind(b"endsolid")
-    body = content[begin:end] if 0 <= begin < end else b""
+    is_last = not content[end:].partition(b"\n")[2].strip()
+    body = content[begin:end] if 0 <= begin < end and is_last else b""
     if b"endsolid" in body:
         body = SOLID.sub(b" ", body)
     places = _at_once(body)
