@@ -93,12 +93,14 @@ analysis: {duration: 1, samples: 11}
         (DRUM, "couplings.rope.on.drum.moment"),
         (WHEEL, "couplings.rim.on.ground.point"),
         (SUM, "couplings.sum.moment"),
+        (SUM, "couplings.sum.shares.gravity.moment"),
     ],
-    ids=["drum", "wheel", "sum"],
+    ids=["drum", "wheel", "sum", "share"],
 )
 def test_the_error_of_what_a_coupling_exerts_covers_a_coarse_run(scene: str, path: str) -> None:
     """What turns a drum, where a wheel touches, a load of small factors: none of them is an action as it stands."""
-    coarse, close = (heuncli.solve(text=scene, tolerance=tolerance, reduce=False)[path] for tolerance in (1e-3, 1e-10))
+    asked = {"by_cause": "shares" in path}
+    coarse, close = (heuncli.solve(text=scene, tolerance=tolerance, **asked)[path] for tolerance in (1e-3, 1e-10))
     off = np.linalg.norm((coarse.values - close.values).reshape(11, -1), axis=1).max()
     assert close.error < 1e-2 * off < off <= coarse.error < 1e2 * off
 
