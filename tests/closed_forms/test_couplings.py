@@ -310,7 +310,6 @@ def test_what_two_drives_leave_open_of_teeth() -> None:
 def test_what_two_stops_that_are_struck_at_once_leave_open_of_a_coupling() -> None:
     """Carts of 2 and 3 kg that move against each other come to both stops: Σ m Δv = -1.5 N s is all that is certain."""
     scene = {
-        "heun": 1,
         "ground": {"points": {"A": [0, 0, 0], "B": [0, 1, 0]}},
         "bodies": {
             name: {"mass": m, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0]}}
