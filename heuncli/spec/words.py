@@ -17,7 +17,7 @@ COUPLING_WORDS = {
     "gears": "gear", "spur": "gear", "bevel": "gear", "rack": "gear", "rackpinion": "gear", "rack_and_pinion": "gear",
     "chain": "belt", "pulley": "rope", "sheave": "rope", "hoist": "rope", "tackle": "rope", "spindle": "screw",
     "lead_screw": "screw", "leadscrew": "screw", "nut": "screw", "couple": "ratio", "mimic": "ratio", "linear": "ratio",
-    "follower": "cam", "constant_velocity": "cv", "homokinetic": "cv",
+    "follower": "cam",
 }  # fmt: skip
 SHAPE_WORDS = {
     "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",
@@ -123,7 +123,7 @@ MISSING = {  # what a key is that must be there
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
-BALL_AND_CV = "a constant-velocity joint is a ball, and couplings: {NAME: {type: cv, joint: BALL, axis: [1, 0, 0]}}"
+CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
@@ -142,10 +142,10 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",
-    "cv": BALL_AND_CV,
-    "constant_velocity": BALL_AND_CV,
-    "homokinetic": BALL_AND_CV,
-    "rzeppa": BALL_AND_CV,
+    "cv": CV,
+    "constant_velocity": CV,
+    "homokinetic": CV,
+    "rzeppa": CV,
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)
