@@ -9,7 +9,7 @@ from typing import Any
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
 from heuncli.spec.entries import keys_of
-from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, PLACES, SEVERAL, WORDS
+from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, ON_MOTOR, PLACES, SEVERAL, WORDS
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
@@ -59,6 +59,8 @@ def belonging(key: str, known: Collection[str]) -> str | None:
             "a rope keeps its length; what stretches is a spring: between two points in its place, "
             "or behind one of its ends (heun explain howto, Pulley)"
         )
+    if "stall" in known and key.lower() in ON_MOTOR:
+        return ON_MOTOR[key.lower()]
     if key == "initial" and "length" in known:
         return "a rod starts as it is assembled, or with its length: ..."
     if key == "initial" and {"from", "to"} <= set(known):

@@ -88,6 +88,7 @@ METHOD_WORDS = {  # of methods, in lower case, without hyphens
     "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
 }  # fmt: skip
 FORMS = {  # what the values of some keys look like
+    "rotor": "what turns in the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
     "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
     "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
     "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
@@ -122,6 +123,23 @@ MISSING = {  # what a key is that must be there
     "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
+}  # fmt: skip
+ON_MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
+    "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
+    "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
+    "torque": "its torque at standstill is stall",
+    "gear": "it is called ratio here: turns of the motor for one of the joint",
+    "max_torque": "it is called limit here", "torque_limit": "it is called limit here",
+    "peak_torque": "it is called limit here", "duty": "it is called value here",
+    "max_speed": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "speed_limit": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "rotor_inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "armature": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "damping": "a load beside it: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
+    "friction": "a load beside it: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}",
+    "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
+    "current": "currents and voltages are not computed: limit is the torque at the largest current",
 }  # fmt: skip
 CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written

@@ -100,6 +100,24 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
             "couplings.c.c [unknown-key]",
             "behind one of its ends",
         ),
+        ("forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}", "forces.f.idle [motor]", "both have one sign"),
+        ("forces: {f: {type: motor, joint: pivot, curve: 2, idle: 3}}", "forces.f.idle [motor]", "one of them out"),
+        ("forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}", "forces.f.limit [motor]", "either way"),
+        (
+            "forces: {f: {type: motor, joint: pivot, curve: 2, inertia: 1}}",
+            "forces.f.inertia [unknown-key]",
+            "rotor: {",
+        ),
+        (
+            "forces: {f: {type: motor, joint: pivot, curve: 2, rotor: 1}}",
+            "forces.f.rotor [wrong-kind]",
+            "{mass: 0.2 kg",
+        ),
+        (
+            "forces: {f: {type: motor, joint: pivot, curve: 2, rotor: {mass: 0, inertia: 1}}}",
+            "forces.f.rotor.mass [motor]",
+            "leave the rotor out",
+        ),
         ("forces: {f: {type: force, on: bar.end, vector: 5}}", "forces.f.vector [wrong-kind]", "three components"),
     ],
 )
