@@ -196,6 +196,8 @@ ROWS: tuple[Quantity, ...] = (
         scalar("normal", "N")),
     *at("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
         scalar("radial", "N"), scalar("axial", "N")),
+    *at("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
+        "none comes out", scalar("efficiency", "1")),
     *at("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
     *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
         scalar("tension", "N"), scalar("last_tension", "N")),
@@ -209,7 +211,7 @@ ROWS: tuple[Quantity, ...] = (
         vector("point", "m"), vector("force", "N"), vector("moment", "N·m")),
     *at("couplings.COUPLING", OPEN, words("open")),
     *shares("couplings.COUPLING", scalar("force", "N"), scalar("moment", "N·m"), scalar("contact", "N"),
-        scalar("normal", "N"), scalar("along", "N"), scalar("aside", "N"),
+        scalar("normal", "N"), scalar("along", "N"), scalar("aside", "N"), scalar("torque", "N·m"),
         scalar("tension", "N"), scalar("last_tension", "N")),
     *at("sections.SECTION", "the point about which moments are taken", cut_vector("point", "m")),
     *at("sections.SECTION", "n, into the piece that is cut off, and e1; e2 = n × e1",

@@ -49,6 +49,14 @@ def test_belt(crossed: bool) -> None:
     near(found.joints["w"]["force"][0], -pull, F, ROUNDING)
     near(found.joints["p"]["force"][0], pull, F, ROUNDING)
     near(found.joints["w"]["moment"][0], np.cross((0, 0, 0.1), pull), F, ROUNDING)
+    for name, on, center, turns in (
+        ("wheel", pull, (0.5, 0, 0.1), sense * F * r2),
+        ("pinion", -pull, (0, 0, 0), -F * r1),
+    ):
+        own = told["on"][name]
+        near(own["force"][0], on, F, ROUNDING)
+        about = own["moment"][0] + np.cross(own["point"][0] - center, on)
+        near(about, (0.0, 0.0, turns) - np.cross((0, 0, center[2]), on), F, ROUNDING)
     near(found.foundation["force"][0], 0.0, F, ROUNDING)
     assert not found.warnings
 

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.oracle.gears import load, teeth
+from tests.oracle.gears import load, pulls, teeth
 from tests.oracle.loads import pushes
 from tests.oracle.read import State, model, start_state
 from tests.oracle.rows import assemble, coordinates, velocities
-from tests.oracle.solve import accelerations, scene_length
+from tests.oracle.solve import accelerations, acting, scene_length
 from tests.oracle.sums import exerted, sums
+from tests.oracle.threads import threads
 from tests.oracle.turns import Array
 from tests.shared import checks
 from tests.shared.coupled_scenes import coupled_scene
@@ -59,6 +60,7 @@ def test_what_is_coupled_twice(kind: str) -> None:
     state, joints = start_state(scene), {j.name: j for j in read.joints}
     speeds = [c.get("rate", c.get("speed")) for c in (coordinates(joints[word], state) for word in of)]
     assert min(map(abs, speeds)) > 1e-3
+    scene["couplings"][name].pop("friction", None)  # which nobody could tell then
     scene["couplings"]["again"] = {"type": "ratio", "of": of, "factors": [1.0, -speeds[0] / speeds[1]]}
     c = case(scene)
     as_the_oracle_says(c)
@@ -82,7 +84,10 @@ def on_bodies(c: Case, name: str, state: State, multiplier: float) -> dict[str, 
     (of,) = (of for of in teeth(c.read) if of.name == name)
     place, force, moment = load(c.read, of, state, multiplier)
     wrench = np.concatenate([force, moment + np.cross(place, force)])
-    return {of.second: wrench, of.first: -wrench}
+    found = {of.second: wrench, of.first: -wrench}
+    for body, at, pull in pulls(c.read, state).get(name, ()):
+        found[body] = found[body] + np.concatenate([pull, np.cross(at, pull)])
+    return found
 
 
 def as_the_oracle_says(c: Case) -> None:
@@ -92,11 +97,15 @@ def as_the_oracle_says(c: Case) -> None:
     checks.same_foundation(c)
     for k, state in enumerate(c.states):
         t = float(c.study.results.time[k])
-        found = accelerations(c.read, state, t, pushes(c.read, state, t), scene_length(c.read, state))
+        size = scene_length(c.read, state)
+        loads = acting(c.read, state, t, size)
+        found = accelerations(c.read, state, t, loads, size)
         for name in c.scene["couplings"]:
             (row,) = (i for i, row in enumerate(found.rows.rows) if row.joint == name)
             is_open = bool(np.abs(found.self_stress[row]).max(initial=0.0) > 1e-9)
             wanted = on_bodies(c, name, state, found.least[row])
+            for push in loads[name] if name in threads(c.read) else ():
+                wanted[push.body] = wanted[push.body] + np.concatenate([push.force, push.about(np.zeros(3))])
             on = c.found.couplings[name]["on"]
             assert {*on} == {*wanted}
             for body, told in on.items():
