@@ -131,7 +131,7 @@ MISSING = {  # what a key is that must be there
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
 OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
-ON_MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
+MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
     "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
     "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
     "torque": "its torque at standstill is stall",
@@ -148,6 +148,15 @@ ON_MOTOR = {  # what a motor's card has, and what of it is called or written oth
     "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
     "current": "currents and voltages are not computed: limit is the torque at the largest current",
 }  # fmt: skip
+BRAKE = dict.fromkeys(("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"') | dict.fromkeys(
+    ("size", "value"), "of a given size it has a torque, in a slide a force"
+)
+LATCH = dict.fromkeys(
+    ("until", "opens", "off"), "it lets go where release becomes true: release: t > 1.5"
+) | dict.fromkeys(
+    ("at", "time", "from", "position"), "where it catches is angle or travel, from what on is when: t > 0.1"
+)
+BY_KEYS = ((("stall", "ratio"), MOTOR), (("joint", "speed", "radius"), BRAKE), (("release", "every"), LATCH))
 CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",

@@ -100,6 +100,13 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
             "couplings.c.c [unknown-key]",
             "behind one of its ends",
         ),
+        (
+            "forces: {f: {type: friction, joint: pivot, torque: 1, speed: 1, ramp: 0.2}}",
+            "forces.f.ramp [unknown-key]",
+            "min(t/0.2, 1)",
+        ),
+        ("latches: {l: {joint: pivot, at: 1}}", "latches.l.at [unknown-key]", "angle or travel"),
+        ("latches: {l: {joint: pivot, until: t > 1}}", "latches.l.until [unknown-key]", "release: t > 1.5"),
         ("forces: {f: {type: motor, joint: pivot, stall: 2, idle: 0}}", "forces.f.idle [motor]", "both have one sign"),
         ("forces: {f: {type: motor, joint: pivot, curve: 2, idle: 3}}", "forces.f.idle [motor]", "one of them out"),
         ("forces: {f: {type: motor, joint: pivot, curve: 2, limit: 0}}", "forces.f.limit [motor]", "either way"),
