@@ -131,6 +131,8 @@ def joint_block(load: JointLoads) -> JointBlock:
         block["axial"] = axial
         block["radial"] = np.sqrt(np.sum(across**2, axis=1))
         block["tilting"] = np.sqrt(np.sum(tilting**2, axis=1))
+    if load.torque is not None:
+        block["torque"] = load.torque
     if load.tension is not None:
         block["tension"] = load.tension
     if load.joint.bearing is not None:
