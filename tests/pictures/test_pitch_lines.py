@@ -1,4 +1,4 @@
-"""Pitch circles and lines: where wheels meet, in their bodies' axes; the ring about a planet; belts run with pulleys."""
+"""Pitch circles and lines stand where wheels meet, in their bodies' axes; belts run as their pulleys turn."""
 
 from __future__ import annotations
 

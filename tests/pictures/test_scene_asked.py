@@ -40,6 +40,7 @@ joints:
         (("crank.nose",), "crank.nose"),
         (("points.krank.pin",), "krank"),
         (("--at", "7"), "--at 7"),
+        (("--at", "peak:joints.no.force"), "--at: "),
         (("--at", "soon"), "--at soon"),
         (("--x", "coordinates.main.angle"), "--x"),
         (("--units", "furlong"), "furlong"),
