@@ -22,6 +22,7 @@ from heuncli.spec.names import GROUND
 from heuncli.tree.prepare import PreparedScene
 
 FINE, FEW = 48, 8  # faces about an axis where there are no more bodies
+SEEN = 1e-7  # of a vector: what places that are drawn tell
 REACH_FRAMES = 60  # frames by which the reach of a motion is told
 
 
@@ -133,13 +134,18 @@ def _rope(rope: RopeLook, poses: Poses, number: Mapping[str, int]) -> dict[str, 
 def _mark(mark: Mark, poses: Poses) -> dict[str, Any]:
     """A symbol with its place and direction, at all frames or, of one that stands still, once."""
     places, ways = mark.stands(poses)
-    kept = 1 if (places == places[0]).all() and (ways == ways[0]).all() else None
+    kept = 1 if stands_still(places) and stands_still(ways) else None
     return {
         "symbol": mark.symbol,
         "name": mark.name,
         "places": drawn(places[:kept]),
         "ways": drawn(ways[:kept]),
     }
+
+
+def stands_still(vectors: Array) -> bool:
+    """Whether vectors (n, 3) are one to the digits that are drawn."""
+    return bool(np.abs(vectors - vectors[0]).max() <= SEEN * float(np.abs(vectors[0]).max()))
 
 
 def _pull(pull: CoupledPull, belts: Collection[str]) -> dict[str, Any]:
