@@ -96,6 +96,10 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     ),
     "bed": SymbolRow(hatched(7.0, 15.0), "", "/"),
     "clamp": SymbolRow(hatched(4.0, 10.0), "", "/"),
+    "road": SymbolRow(hatched(0.0, 15.0), "", "/"),
+    # what a coordinate comes up against, x into it; what holds it there
+    "stop": SymbolRow((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
+    "latch": SymbolRow((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
     # of bodies
     "centre": SymbolRow((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
     "mass": SymbolRow((ring(3.4, "ink"),), "●", "*"),
