@@ -25,7 +25,6 @@ def whole(mechanism: Mechanism) -> list[str]:
     paths = any(joint.path is not None for joint in mechanism.joints)
     reasons = (
         (mechanism.rubbing, "friction hangs on what joints carry, and in a smaller scene they carry less"),
-        (mechanism.couplings, "couplings look at bodies and coordinates that a smaller scene might be without"),
         (paths, "a path is fixed in its body as that is given"),
     )
     return [f"the scene is moved as it is given: {why}" for met, why in reasons if met]

@@ -17,7 +17,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
-          "system_vector")  # fmt: skip
+          "system_vector", "couplings")  # fmt: skip
 ROUNDING = 1e-11  # of the largest of a kind, beside what both runs say of themselves
 # directions of what may be zero; the rest are functions of what is compared, of half turns beyond all bounds
 UNTOLD = ("axis", "line", "stress", "rodrigues")
@@ -191,8 +191,9 @@ ESTIMATED = {
     "joints": ("reactions", "drives"), "stops": ("reactions", "drives"),
     "foundation": ("foundation", "reactions", "drives"), "sections": ("sections",), "energy": ("energy", "motion"),
 }  # fmt: skip
-FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension")
-MOMENTS = ("moment", "T", "M1", "M2", "tilting", "moment_orbital", "moment_spin")
+FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension", "last_tension", "tight", "slack", "along", "aside",
+          "friction", "contact", "thrust")  # fmt: skip
+MOMENTS = ("moment", "torque", "T", "M1", "M2", "tilting", "moment_orbital", "moment_spin")
 ENERGIES = ("kinetic", "potential", "work", "energy")
 ALIKE = {kind: among for among in (FORCES, MOMENTS, ENERGIES) for kind in among}
 MEASURED: dict[str, tuple[str, ...]] = {  # by scales_of: all kinds that may be nothing but rounding

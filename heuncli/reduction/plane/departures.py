@@ -16,30 +16,25 @@ from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
 from heuncli.mechanism.model import BushingLoad, Joint, PairLoad, PointLoad
-from heuncli.records import record
+from heuncli.reduction.plane.departure import Departure, beside
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
-
-
-@record
-class Departure:
-    """What leaves the plane, in words, and by how much, of the largest it could; acts: it is a load, blow or drive."""
-
-    what: str
-    size: float
-    acts: bool = False
 
 
 def departures(seen: View) -> Iterator[Departure]:
     """All that leaves the plane."""
     yield from _joints(seen)
-    if not all(seen.upright):
-        height = _height(seen)
+    height = None if all(seen.upright) else _height(seen)
+    if height is not None:
         yield from _bodies(seen, height)
         yield from _held_in_plane(seen, height)
         yield from _loads(seen, height)
         yield from _blows(seen, height)
     yield from _still(seen)
+    if seen.scene.mechanism.couplings:
+        from heuncli.reduction.plane.coupled import leaving  # few scenes have them
+
+        yield from leaving(seen, height)
 
 
 def _height(seen: View) -> float:
@@ -50,12 +45,6 @@ def _height(seen: View) -> float:
     for joint in mechanism.joints:
         heights += [seen.height(b, p) for b, p in ((joint.a, joint.p), (joint.b, joint.q)) if not seen.stays(b)]
     return sorted(heights)[len(heights) // 2]
-
-
-def _beside(seen: View, height: float, body: int, point: Array, what: str) -> Iterator[Departure]:
-    off = abs(seen.height(body, point) - height)
-    if off > tolerances.FLAT * seen.reach:
-        yield Departure(f"{what} lies {off:.1g} m beside it", off / seen.reach)
 
 
 def _vector(what: str, off: float, size: float, unit: str, acts: bool = False) -> Iterator[Departure]:
@@ -84,7 +73,7 @@ def _bodies(seen: View, height: float) -> Iterator[Departure]:
         if seen.upright[i]:
             continue
         name = f"bodies.{body.name}"
-        yield from _beside(seen, height, i, body.center, f"{name}.center")
+        yield from beside(seen, height, i, body.center, f"{name}.center")
         J, own = body.inertia + lent.get(i, 0.0), seen.normal_in(i)
         across = J @ own - (own @ J @ own) * own
         yield from _vector(f"{name}: its inertia", float(np.sqrt(across @ across)), float(np.trace(J)), "kg m^2")
@@ -100,7 +89,7 @@ def _held_in_plane(seen: View, height: float) -> Iterator[Departure]:
         common = turn is NOT_AT_ALL or (turn is ABOUT_AXIS and stance.along)  # both bodies tilt as one
         if not common and not _all_stay(seen, joint):
             for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
-                yield from _beside(seen, height, end, point, f"the point of joints.{joint.name}")
+                yield from beside(seen, height, end, point, f"the point of joints.{joint.name}")
 
 
 def _all_stay(seen: View, joint: Joint) -> bool:
@@ -116,13 +105,13 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             if seen.stays(load.body):
                 continue
             if load.kind == "force" and load.point is not None:
-                yield from _beside(seen, height, load.body, load.point, f"the point of {name}")
+                yield from beside(seen, height, load.body, load.point, f"the point of {name}")
             n = seen.normal_in(load.body, load.in_body)
             yield from _in_time(f"{name}.vector", load.vector, n, load.kind)
         elif isinstance(load, PairLoad):
             if load.a != load.b and not (seen.stays(load.a) and seen.stays(load.b)):
                 for end, point in load.points:
-                    yield from _beside(seen, height, end, point, f"a point of {name}")
+                    yield from beside(seen, height, end, point, f"a point of {name}")
         elif isinstance(load, BushingLoad):
             yield from _bushing(seen, load, height)
         elif load.kind == "turn_spring":
@@ -141,7 +130,7 @@ def _bushing(seen: View, load: BushingLoad, height: float) -> Iterator[Departure
         return
     name = f"forces.{load.name}"
     for end, point in load.points:
-        yield from _beside(seen, height, end, point, f"a point of {name}")
+        yield from beside(seen, height, end, point, f"a point of {name}")
     along = [F.T @ seen.normal_in(end) for end, F in ((load.a, load.frame), (load.b, load.to_frame))]
     k = int(np.argmax(np.abs(along[0])))
     askew = float(np.abs(along[0] - along[1]).max() + np.abs(np.delete(along[0], k)).max())
@@ -172,7 +161,7 @@ def _blows(seen: View, height: float) -> Iterator[Departure]:
             continue
         name = f"impulses.{blow.name}"
         if blow.kind == "impulse" and blow.point is not None:
-            yield from _beside(seen, height, blow.body, blow.point, f"the point of {name}")
+            yield from beside(seen, height, blow.body, blow.point, f"the point of {name}")
         n, h = seen.normal_in(blow.body, blow.in_body), blow.vector
         leaving = (h @ n) * n if blow.kind == "impulse" else h - (h @ n) * n
         off = float(np.sqrt(leaving @ leaving))

@@ -15,6 +15,7 @@ from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.sums import weighted_sum
 from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Assembly,
@@ -196,6 +197,15 @@ class Flat:
         offset = point.offset + height * (point.axes @ n)
         return NamedPoint(point.body, self.place(point.body, point.place), _in_plane(axes), offset)
 
+    def couplings(self) -> tuple[Coupling, ...]:
+        """The couplings, which ask for the same there."""
+        if not self.scene.mechanism.couplings:
+            return ()
+        from heuncli.reduction.plane.coupled import seen_from  # few scenes have them
+        from heuncli.reduction.restated_couplings import couplings_seen
+
+        return couplings_seen(self.scene.layout, lambda own: seen_from(self.seen, self.axes, own))
+
     def idle(self) -> tuple[IdleSpin, ...]:
         """The inertia that is lent about the normal."""
         found = [(i, self.moment(i, lent)) for i, lent in self.lent.items()]
@@ -219,7 +229,7 @@ class Flat:
             joints=tuple(self.joint(k) for k in range(len(of.joints))),
             loads=tuple(self.load(load) for load in of.loads), blows=tuple(self.blow(blow) for blow in of.blows),
             stops=of.stops, conditions=of.conditions,
-            points={name: self.point(point) for name, point in of.points.items()},
+            points={name: self.point(point) for name, point in of.points.items()}, couplings=self.couplings(),
         )  # fmt: skip
 
 
