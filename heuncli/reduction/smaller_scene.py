@@ -138,6 +138,7 @@ def joint_of(layout: Layout, parts: Parts, number: dict[int, int], k: int) -> Jo
     return replace(
         joint, a=number[a.body], p=a.point(joint.p), axis=a.R @ joint.axis,
         b=number[b.body], q=b.point(joint.q), to_axis=b.R @ joint.to_axis, length=length,
+        path=None if joint.path is None else joint.path.turned(a.R),
     )  # fmt: skip
 
 

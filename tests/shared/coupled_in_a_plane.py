@@ -179,9 +179,29 @@ def wheel(draft: Coupled, name: str) -> None:
     }  # fmt: skip
 
 
+def curve(draft: Coupled, name: str) -> None:
+    """A body on a path of the carrier, or a roller that runs beside one; what it hangs on does not hold it upright."""
+    rng, Q = draft.rng, about(Z, float(draft.rng.uniform(0, 6)))
+    s, P, axes = np.linspace(-3.0, 3.0, 13), draft.somewhere(), draft.axes(draft.on)
+    way = axes @ Q @ np.array([s, 0.3 * np.sin(s), 0.0 * s])
+    told = "xyz" if way[2].any() else "xy"
+    for axis, y in zip(told, way, strict=False):
+        draft.tables[f"{name}_{axis}"] = {"x": s.tolist(), "y": y.tolist(), "interpolation": "cubic"}
+    beside: Scene = {}
+    if rng.random() < 0.5:
+        beside = {"radius": float(rng.uniform(0.2, 0.8)), "normal": (axes @ draft.normal()).tolist()}
+    draft.body(name, P)
+    del draft.bodies[name]["position"]
+    draft.joints[f"j_{name}"] = {
+        "type": "curve", "from": draft.point(draft.on, P), "to": draft.point(name, P + 0.2 * draft.somewhere()),
+        **{axis: f"{name}_{axis}" for axis in told}, **beside,
+        "initial": {"travel": float(rng.uniform(-1, 1)), "speed": float(rng.uniform(-1, 1))},
+    }  # fmt: skip
+
+
 ELEMENTS: dict[str, Callable[[Coupled, str], None]] = {
     "gears": gears, "rack": rack, "belt": belt, "ratio": ratio, "differential": differential, "cam": cam, "rope": rope,
-    "points": points, "wheel": wheel,
+    "points": points, "wheel": wheel, "curve": curve,
 }  # fmt: skip
 
 
@@ -203,8 +223,9 @@ def coupled_flat(seed: int, kinds: tuple[str, ...] = (), how: str = "drawn") -> 
     """
     rng = np.random.default_rng(seed)
     plane = "xy" if how == "declared" else str(rng.choice(list(PLANES)))
+    kinds = kinds or tuple(str(kind) for kind in rng.choice(list(ELEMENTS), rng.integers(1, 3), replace=False))
     upright, own_axes = (bool(x < 0.5 and how != "declared") for x in rng.random(2))
-    draft = Coupled(rng, PLANES[plane], upright, own_axes)
+    draft = Coupled(rng, PLANES[plane], upright and "curve" not in kinds, own_axes)
     if rng.random() < 0.75 or not draft.upright:
         draft.body("carrier", np.zeros(3))
         hung = str(rng.choice(HUNG[draft.upright] if how != "declared" else ("ball", "free")))
@@ -213,7 +234,6 @@ def coupled_flat(seed: int, kinds: tuple[str, ...] = (), how: str = "drawn") -> 
         draft.on = "carrier"
     if how == "welded":
         bed(draft)
-    kinds = kinds or tuple(str(kind) for kind in rng.choice(list(ELEMENTS), rng.integers(1, 3), replace=False))
     for kind in kinds:
         ELEMENTS[kind](draft, kind)
     names = ["ground", *draft.bodies]

@@ -198,7 +198,7 @@ ENERGIES = ("kinetic", "potential", "work", "energy")
 ALIKE = {kind: among for among in (FORCES, MOMENTS, ENERGIES) for kind in among}
 MEASURED: dict[str, tuple[str, ...]] = {  # by scales_of: all kinds that may be nothing but rounding
     **dict.fromkeys(FORCES, ("F",)), **dict.fromkeys(MOMENTS, ("FL",)), **dict.fromkeys(ENERGIES, ("FL",)),
-    **dict.fromkeys(("position", "center", "travel", "point", "about", "length"), ("L",)),
+    **dict.fromkeys(("position", "center", "travel", "point", "contact_point", "about", "length"), ("L",)),
     **dict.fromkeys(("velocity", "center_velocity", "speed", "center_velocity_jump"), ("v",)),
     **dict.fromkeys(("angular_velocity", "angular_velocity_jump"), ("w",)), "rate": ("v", "w"),
     "angle": ("1",), "rotation": ("1",), "normal": ("1",), "first_axis": ("1",),

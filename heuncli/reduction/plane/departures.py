@@ -24,6 +24,7 @@ from heuncli.results import Array
 def departures(seen: View) -> Iterator[Departure]:
     """All that leaves the plane."""
     yield from _joints(seen)
+    yield from _paths(seen)
     height = None if all(seen.upright) else _height(seen)
     if height is not None:
         yield from _bodies(seen, height)
@@ -60,6 +61,19 @@ def _joints(seen: View) -> Iterator[Departure]:
         yield from _vector(f"joints.{joint.name}.{key}", stance.off, 1.0, "(sine)")
 
 
+def _paths(seen: View) -> Iterator[Departure]:
+    """Paths that rise out of the plane, and rollers that run beside them out of it."""
+    for joint in seen.scene.mechanism.joints:
+        if joint.path is None:
+            continue
+        n = seen.normal_in(joint.a)
+        rise = float(np.ptp(joint.path.track(joint.path.looked_at)[0] @ n))
+        yield from _vector(f"the path of joints.{joint.name}", rise, seen.reach, "m")
+        if joint.path.radius:
+            off = joint.path.normal - (joint.path.normal @ n) * n
+            yield from _vector(f"joints.{joint.name}.normal", float(np.sqrt(off @ off)), 1.0, "(sine)")
+
+
 def _bodies(seen: View, height: float) -> Iterator[Departure]:
     """Gravity; centres, inertia and velocities of the bodies that are not upright."""
     mechanism, start, n = seen.scene.mechanism, seen.scene.start, seen.n
@@ -88,7 +102,8 @@ def _held_in_plane(seen: View, height: float) -> Iterator[Departure]:
         turn = JOINTS[joint.kind].turn
         common = turn is NOT_AT_ALL or (turn is ABOUT_AXIS and stance.along)  # both bodies tilt as one
         if not common and not _all_stay(seen, joint):
-            for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
+            ends = ((joint.a, joint.p), (joint.b, joint.q))
+            for end, point in ends if joint.path is None else ends[1:]:  # a path is where what runs along it is
                 yield from beside(seen, height, end, point, f"the point of joints.{joint.name}")
 
 
