@@ -87,7 +87,7 @@ def same(both: Pair) -> float:
         assert a.shape == b.shape, path
         assert np.array_equal(np.isnan(a), np.isnan(b)), f"{path}: open at other places"
         difference = float(np.nan_to_num(np.abs(a - b)).max(initial=0.0))
-        size = largest["total" if path.startswith("system_vector") else path.rsplit(".", 1)[-1]]
+        size = largest["total" if path.startswith("system_vector") else kind_of(path)]
         words = path.split(".")
         thin = slender.get(words[1], 1.0) if words[0] == "bodies" and words[-1] in ANGULAR else 1.0
         allowed = (estimate(both, path) * thin + ROUNDING * thin**2) * size
@@ -140,6 +140,12 @@ def known(both: Pair) -> int:
     return int(min(np.searchsorted(time, np.inf if h is None else h) for h in horizons))
 
 
+def kind_of(path: str) -> str:
+    """The last word of a path; a coupling's normal is a force."""
+    word = path.rsplit(".", 1)[-1]
+    return "force" if word == "normal" and path.startswith("couplings.") else word
+
+
 def sizes(study: Study, found: Mapping[str, Any]) -> dict[str, float]:
     """What numbers of each kind are measured in, by the last word of their path: the largest of the kind, or what the
     scene's length, forces and masses make of it where that is more.
@@ -147,7 +153,7 @@ def sizes(study: Study, found: Mapping[str, Any]) -> dict[str, float]:
     largest: dict[str, float] = {}
     for path, value in found.items():
         if numeric(np.atleast_1d(np.asarray(value, dtype=object)).tolist()):
-            kind = path.rsplit(".", 1)[-1]
+            kind = kind_of(path)
             own = float(np.nan_to_num(np.abs(np.asarray(value, dtype=float))).max(initial=0.0))
             largest[kind] = max(largest.get(kind, 0.0), own)
     scales = scales_of(study, largest)
