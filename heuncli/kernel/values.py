@@ -140,6 +140,13 @@ class CamContact(Value):
     n: Vec3
 
 
+class TrackFrame(Value):
+    """A direction across a path, and what it changes by along it."""
+
+    N: Vec3
+    change: Vec3
+
+
 class MotionTangent(Value):
     """What velocity and acceleration of a place that a body carries change by."""
 

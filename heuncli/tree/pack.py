@@ -105,7 +105,7 @@ def framed(
 
 def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
     """The joints that are not to be cut."""
-    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named or j.path is not None}
+    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named}
     kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
@@ -331,7 +331,9 @@ class _Builder:
                 if joint.tension_only:
                     self._rope(k)
                 self._row(k, kernel.ROD, program=program, length=length)
-            for d in kind.guides:
+            if joint.path is not None:
+                self._track(k, joint.path)
+            for d in () if kind.follows_path else kind.guides:
                 self._row(k, kernel.GUIDE, e=joint_frame(joint, d))
             for d, e in kind.dots:
                 f = to_direction(joint, s.R_ref, e)
@@ -344,6 +346,18 @@ class _Builder:
                 if limit is not None:
                     self._limit(stop, limit, sense)
         self._latches()
+
+    def _track(self, k: int, path: Path) -> None:
+        """The rows across the path of a joint that was cut, along which a counter counts."""
+        h = Z if self.mechanism.planar else path.off_all_slopes
+        first = self._put_path(path)
+        for faced in range(2):
+            self._row(k, kernel.TRACK)
+            self.closure_rows[-1] = replace(
+                self.closure_rows[-1], lift=first, pieces=len(path.coefficients), period=path.period,
+                radius=path.radius, h=path.normal if path.radius else h, faced=faced, counter=len(self.counters),
+            )  # fmt: skip
+        self.counters[k] = -1
 
     def coupled_rows(self) -> None:
         """The rows of the couplings, which come after those of the cut joints."""
@@ -434,7 +448,8 @@ class _Builder:
         energy_group = -1
         for k in self.counters:
             self.counters[k] = len(self.y)
-            self.y.append(self.starts[k].angle)
+            on_path = self.mechanism.joints[k].path is not None
+            self.y.append(self.starts[k].travel if on_path else self.starts[k].angle)
             self.weights.append(0.0)
         work_at = len(self.y) if work else -1
         if work:
@@ -477,13 +492,21 @@ class _Builder:
             pack=Pack(),
             work_at=work_at,
             contacts=tuple(self.contacts),
-            flat=not self.part_rows and self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
+            flat=self._is_flat() and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return frame_of(with_islands(layout))
 
+    def _is_flat(self) -> bool:
+        """Whether the kernel may move a scene declared planar in the plane: couplings and rows of paths need space."""
+        kinds = {row.kind for row in self.closure_rows}
+        return self.mechanism.planar and not self.part_rows and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
+
     def _counter_rows(self) -> list[CounterRow]:
-        joints = self.mechanism.joints
+        joints, owners = self.mechanism.joints, self.row_joint
         return [
-            CounterRow(self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis)
+            CounterRow(
+                self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis,
+                1 + owners.index(k) if joints[k].path is not None else 0,
+            )
             for k, at in self.counters.items()
-        ]
+        ]  # fmt: skip
