@@ -29,7 +29,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung, turn_along_of
     from heuncli.kernel.tangent_points import acceleration_at, carried_along
     from heuncli.kernel.tree import direction_of
-    from heuncli.kernel.values import Carried, MotionTangent, PathPoint, RowTangent, TrackFrame
+    from heuncli.kernel.values import Carried, MotionTangent, PathPoint, PlaceTangent, RowTangent, TrackFrame
 
     NEARING = 24  # Newton's steps to a place
 
@@ -176,9 +176,9 @@ def track_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: V
 
 
 def across_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:
-    """Of a row across a path, on which its point stands."""
+    """Of a row across a path."""
     here: PathPoint = place_in_world(scene, row)
-    d: PathPoint = place_along(scene, row, here, Q)
+    d: PlaceTangent = place_along(scene, row, here, Q)
     frame: TrackFrame = across(scene, row, here)
     omega: Vec3 = omega_of(scene, row.a)
     b: MotionTangent = carried_along(scene, row.b, row.Q, Q)
@@ -188,38 +188,41 @@ def across_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: 
     A: Vec3 = sub(acceleration_at(scene, row.b, row.Q), acceleration_at(scene, row.a, row.Q))
     A = add_scaled(A, -2.0, cross(omega, v))
     dA: Vec3 = add_scaled(sub(b.a, a.a), -2.0, add_cross(cross(omega_along(scene, row.a), v), omega, dv))
-    N: Vec3 = add_scaled(swung(scene, row.a, frame.N), d.r.x, frame.change)
-    u: cython.double = dot(here.slope, v) / dot(here.slope, here.slope)
-    du: cython.double = pace_changed(here, d, v, dv)
-    bent: cython.double = (dot(N, here.bend) + dot(frame.N, d.bend)) * u * u + 2.0 * dot(frame.N, here.bend) * u * du
+    N: Vec3 = add_scaled(swung(scene, row.a, frame.N), d.s, frame.change)
+    square: cython.double = dot(here.slope, here.slope)
+    u: cython.double = dot(here.slope, v) / d.square
+    w: cython.double = dot(here.slope, v) / square
+    change: cython.double = dot(d.slope, v) + dot(here.slope, dv)
+    du: cython.double = (change - u * d.squared) / d.square
+    dw: cython.double = (change - 2.0 * w * dot(here.slope, d.slope)) / square
+    curved: cython.double = dot(frame.N, here.bend)
+    bent: cython.double = (dot(N, here.bend) + dot(frame.N, d.bend)) * u * w + curved * (du * w + u * dw)
     acceleration: cython.double = dot(N, A) + dot(frame.N, dA) - bent
     return RowTangent(Q, N, Vec3(0.0, 0.0, 0.0), dot(N, v) + dot(frame.N, dv), acceleration)
 
 
-def place_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], here: PathPoint, Q: Vec3) -> PathPoint:
-    """What the place changes by, ds = r' . dD / |r'|^2 (in the first component of r), and its slope and bend."""
-    moved: Vec3 = sub(Q, point_along(scene, row.a, row.p).x)
+def place_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], here: PathPoint, Q: Vec3) -> PlaceTangent:
+    """What the place changes by, ds = r' . dD / (|r'|^2 - r'' . (D - r)), its slope and bend, and that divisor."""
     arm: Vec3 = sub(place_of(scene, row.b, row.q), place_of(scene, row.a, row.p))
+    moved: Vec3 = sub(Q, point_along(scene, row.a, row.p).x)
     moved = sub(moved, cross(turn_along_of(scene, row.a), arm))
-    ds: cython.double = dot(here.slope, moved) / dot(here.slope, here.slope)
-    slope: Vec3 = add_scaled(swung(scene, row.a, here.slope), ds, here.bend)
-    bend: Vec3 = add_scaled(swung(scene, row.a, here.bend), ds, here.twist)
-    return PathPoint(Vec3(ds, 0.0, 0.0), slope, bend, Vec3(0.0, 0.0, 0.0))
-
-
-def pace_changed(here: PathPoint, d: PathPoint, v: Vec3, dv: Vec3) -> cython.double:
-    """What u = r' . v / |r'|^2 changes by."""
-    square: cython.double = dot(here.slope, here.slope)
-    u: cython.double = dot(here.slope, v) / square
-    return (dot(d.slope, v) + dot(here.slope, dv) - 2.0 * u * dot(here.slope, d.slope)) / square
+    off: Vec3 = sub(arm, here.r)
+    square: cython.double = dot(here.slope, here.slope) - dot(here.bend, off)
+    s: cython.double = dot(here.slope, moved) / square
+    slope: Vec3 = add_scaled(swung(scene, row.a, here.slope), s, here.bend)
+    bend: Vec3 = add_scaled(swung(scene, row.a, here.bend), s, here.twist)
+    squared: cython.double = 3.0 * s * dot(here.slope, here.bend) - s * dot(here.twist, off) - dot(here.bend, moved)
+    return PlaceTangent(s, slope, bend, square, squared)
 
 
 def pace_of_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """What the rate of the place of a TRACK changes by."""
+    """What the rate u of the place of a TRACK changes by."""
     Q: Vec3 = place_of(scene, row.b, row.q)
     dQ: Vec3 = point_along(scene, row.b, row.q).x
     here: PathPoint = place_in_world(scene, row)
+    d: PlaceTangent = place_along(scene, row, here, dQ)
     b: MotionTangent = carried_along(scene, row.b, Q, dQ)
     a: MotionTangent = carried_along(scene, row.a, Q, dQ)
     v: Vec3 = sub(carried(scene, row.b, Q).v, carried(scene, row.a, Q).v)
-    return pace_changed(here, place_along(scene, row, here, dQ), v, sub(b.v, a.v))
+    change: cython.double = dot(d.slope, v) + dot(here.slope, sub(b.v, a.v))
+    return (change - dot(here.slope, v) / d.square * d.squared) / d.square

@@ -147,6 +147,16 @@ class TrackFrame(Value):
     change: Vec3
 
 
+class PlaceTangent(Value):
+    """What the place s of a path beside a point changes by: s itself, r', r'', and |r'|^2 - r'' . (D - r)."""
+
+    s: float
+    slope: Vec3
+    bend: Vec3
+    square: float  # that itself
+    squared: float  # and its change
+
+
 class MotionTangent(Value):
     """What velocity and acceleration of a place that a body carries change by."""
 

@@ -132,6 +132,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "thin": lambda: to_yaml(thin_rods(which)[0]),
         "rolling": lambda: rolling_scene(which)[0],
         "curve": lambda: coupled_scene(which, ("curve",)),
+        "tracks": lambda: coupled_scene(which, ("tracks",)),
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }
@@ -147,6 +148,7 @@ CASES = [
     *(("thin", seed) for seed in (0, 1)),
     *(("rolling", seed) for seed in (3, 4, 5)),
     *(("curve", seed) for seed in (0, 1)),  # a point on its path, a roller beside
+    *(("tracks", seed) for seed in (0, 1)),  # two points of a body, each on its path
     ("spinning", BALLS), ("text", LOADED), ("text", ELASTIC), ("text", FOUR_BAR.replace("SPACE", "spatial")),
     ("text", FOUR_BAR.replace("SPACE", "planar")),
 ]  # fmt: skip
