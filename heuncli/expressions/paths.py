@@ -23,6 +23,7 @@ LOOKS = 8  # places in a piece at which a path is looked at
 AT_ONCE = 2**18  # distances that are looked at together
 NEWTON = 32  # steps to the nearest place
 TRIED = 4  # of the places looked at, those from which the nearest is sought
+BEYOND = 0.01  # of a path, by which it goes on behind a stop at its end: what is at the stop is there to rounding
 AROUND = 64  # directions that are tried
 NO_PLANE = np.zeros(3)
 NO_PLANE.setflags(write=False)
@@ -58,6 +59,24 @@ class Path:
     def later(self, phase: float) -> Path:
         """The path with every place at a parameter that is greater by the phase."""
         return replace(self, knots=self.knots + phase) if phase else self
+
+    def beyond(self, first: bool, last: bool) -> Path:
+        """The path with its end pieces gone on a little, at its first end, its last, or both; a closed one as it is."""
+        if self.period or not (first or last):
+            return self
+        more = BEYOND * (self.last - self.first)
+        knots, pieces = self.knots.copy(), self.coefficients.copy()
+        if first:
+            knots[0] -= more
+            r, slope, bend, twist = self.track(self.first)
+            r, slope, bend = (
+                r - more * (slope - more * (bend / 2.0 - more * twist / 6.0)),
+                slope - more * (bend - more * twist / 2.0), bend - more * twist,
+            )  # fmt: skip
+            pieces[0] = r, slope, bend / 2.0, twist / 6.0
+        if last:
+            knots[-1] += more
+        return replace(self, knots=knots, coefficients=pieces)
 
     def at(self, s: Array | float) -> tuple[Array, Array, Array]:
         """Place, slope and bend of what runs along the path, or beside it, (..., 3) each; s of any shape."""

@@ -2,7 +2,7 @@
 
     TRACK   (r(s) - D) . r' = 0,  N . (D - r) = 0        D from P to Q, s the place of the path beside Q; axes of a
             u = r' . Ddot / (|r'|^2 - r'' . (D - r)),  gamma = N . (A - r'' u w),  w = r' . Ddot / |r'|^2
-    ALONG   c (s - length) = 0                           s the coordinate of a freedom along the path, c = |r'(length)|
+    ALONG   c (s - length) = 0                           s the coordinate of a freedom along the path, c a constant (ratio)
             f = c r' / |r'|^2,  gamma = f . (A - r'' u^2)
 A: what of the second derivative of D as a sees it velocities make. N is one of two directions across the path: with h,
 fixed in a, N = h x r' / |h x r'|, or r'/|r'| x that. The place s is sought from where the state counts it, so that the
@@ -75,21 +75,10 @@ def pace_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
 def along_row_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], v: Vec3, A: Vec3) -> cython.void:
     """To a place along a path that is a freedom of the tree."""
     freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[row.freedom])
-    c: cython.double = scale_of(scene, row)
-    square: cython.double = dot(freedom.s, freedom.s)
-    row.f = scaled(c / square, freedom.s)
-    row.gap = c * (freedom.q - row.length)
+    row.f = scaled(row.ratio / dot(freedom.s, freedom.s), freedom.s)
+    row.gap = row.ratio * (freedom.q - row.length)
     row.rate = dot(row.f, v)
     row.gamma = dot(row.f, A) - dot(row.f, freedom.curved) * freedom.u * freedom.u
-
-
-def scale_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
-    """|r'| where an ALONG row holds, so that its multiplier there is the force."""
-    freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[row.freedom])
-    here: PathPoint = path_point(scene, freedom.path, freedom.pieces, freedom.period, row.length)
-    if freedom.radius > 0.0:
-        here = beside(here, freedom.radius, freedom.normal)
-    return norm(here.slope)
 
 
 def track_point(scene: cython.pointer[Scene], row: cython.pointer[Closure], s: cython.double) -> PathPoint:
@@ -168,7 +157,7 @@ def track_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: V
         return across_along(scene, row, Q)
     freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[row.freedom])
     own: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[row.freedom])
-    c: cython.double = scale_of(scene, row)
+    c: cython.double = row.ratio
     square: cython.double = dot(freedom.s, freedom.s)
     turned: cython.double = 2.0 * dot(freedom.s, own.s) / square
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)

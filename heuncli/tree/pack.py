@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -229,6 +230,11 @@ class _Builder:
         path = self.mechanism.joints[h.joint].path if h.joint >= 0 else None
         if path is None or quantity != "travel":
             return row
+        own = [stop for stop in self.mechanism.stops if stop.joint == h.joint]
+        path = path.beyond(
+            any(stop.low is not None and stop.low >= path.first for stop in own),
+            any(stop.high is not None and stop.high <= path.last for stop in own),
+        )
         reach, slope, bend = path.greatest
         return replace(
             row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
@@ -409,6 +415,11 @@ class _Builder:
         self.one_sided.append(ContactRow(row, sense, len(self.contacts), limited, held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
+        elif joint.path is not None:
+            self._row(stop.joint, kernel.ALONG, length=limit, freedom=limited)
+            anywhere = stop.latch is not None and stop.latch.at is None
+            slope = joint.path.at(self.starts[stop.joint].travel if anywhere else limit)[1]
+            self.closure_rows[-1] = replace(self.closure_rows[-1], ratio=math.sqrt(float(slope @ slope)))
         elif stop.quantity == "travel":
             self._row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
