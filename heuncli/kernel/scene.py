@@ -167,8 +167,7 @@ class Closure(Record):
     STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
     b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
     runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
-    TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length,
-    with `ratio` metres of the gap to a unit of it.
+    TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length.
     """
 
     kind: int

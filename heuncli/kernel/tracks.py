@@ -2,8 +2,8 @@
 
     TRACK   (r(s) - D) . r' = 0,  N . (D - r) = 0        D from P to Q, s the place of the path beside Q; axes of a
             u = r' . Ddot / (|r'|^2 - r'' . (D - r)),  gamma = N . (A - r'' u w),  w = r' . Ddot / |r'|^2
-    ALONG   c (s - length) = 0                           s the coordinate of a freedom along the path, c a constant (ratio)
-            f = c r' / |r'|^2,  gamma = f . (A - r'' u^2)
+    ALONG   s - length = 0                               s the coordinate of a freedom along the path
+            f = r' / |r'|^2,  gamma = f . (A - r'' u^2)
 A: what of the second derivative of D as a sees it velocities make. N is one of two directions across the path: with h,
 fixed in a, N = h x r' / |h x r'|, or r'/|r'| x that. The place s is sought from where the state counts it, so that the
 branch of a path that crosses itself stays the same one. Beyond an open end there is none (NaN).
@@ -75,8 +75,8 @@ def pace_of(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cytho
 def along_row_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], v: Vec3, A: Vec3) -> cython.void:
     """To a place along a path that is a freedom of the tree."""
     freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[row.freedom])
-    row.f = scaled(row.ratio / dot(freedom.s, freedom.s), freedom.s)
-    row.gap = row.ratio * (freedom.q - row.length)
+    row.f = scaled(1.0 / dot(freedom.s, freedom.s), freedom.s)
+    row.gap = freedom.q - row.length
     row.rate = dot(row.f, v)
     row.gamma = dot(row.f, A) - dot(row.f, freedom.curved) * freedom.u * freedom.u
 
@@ -152,16 +152,15 @@ def across(scene: cython.pointer[Scene], row: cython.pointer[Closure], here: Pat
 
 
 def track_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:
-    """What a row of either kind changes by: N . (A - r'' u^2); of the coordinate of a freedom c s''."""
+    """What a row of either kind changes by: N . (A - r'' u^2); of the coordinate of a freedom s''."""
     if row.kind == TRACK:
         return across_along(scene, row, Q)
     freedom: cython.pointer[Freedom] = cython.address(scene.freedoms[row.freedom])
     own: cython.pointer[FreedomTangent] = cython.address(scene.freedom_tangents[row.freedom])
-    c: cython.double = row.ratio
     square: cython.double = dot(freedom.s, freedom.s)
     turned: cython.double = 2.0 * dot(freedom.s, own.s) / square
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
-    return RowTangent(Q, scaled(c / square, add_scaled(own.s, -turned, freedom.s)), zero, c * own.u, 0.0)
+    return RowTangent(Q, scaled(1.0 / square, add_scaled(own.s, -turned, freedom.s)), zero, own.u, 0.0)
 
 
 def across_along(scene: cython.pointer[Scene], row: cython.pointer[Closure], Q: Vec3) -> RowTangent:

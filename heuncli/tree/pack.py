@@ -416,10 +416,10 @@ class _Builder:
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
         elif joint.path is not None:
-            self._row(stop.joint, kernel.ALONG, length=limit, freedom=limited)
             anywhere = stop.latch is not None and stop.latch.at is None
             slope = joint.path.at(self.starts[stop.joint].travel if anywhere else limit)[1]
-            self.closure_rows[-1] = replace(self.closure_rows[-1], ratio=math.sqrt(float(slope @ slope)))
+            weight = math.sqrt(float(slope @ slope))
+            self._row(stop.joint, kernel.ALONG, length=limit, freedom=limited, weight=weight)
         elif stop.quantity == "travel":
             self._row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
