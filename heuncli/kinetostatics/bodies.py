@@ -12,7 +12,7 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import GROUND
+from heuncli.mechanism.model import GROUND, Joint
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.by_component import body_by_body, cross, instants_first, rows, turned, turned_back

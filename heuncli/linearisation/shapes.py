@@ -62,7 +62,7 @@ def of_joint(layout: Layout, found: Linearised, joint: Joint) -> dict[str, Array
 
 
 def along_path(layout: Layout, joint: Joint, found: Linearised, shift: Array) -> Array:
-    """Of the parameter of a path: a freedom of the tree; or r' . shift / |r'|^2, where it was cut."""
+    """Of the parameter of a path: a freedom of the tree, or r' . shift / |r'|^2, where it was cut."""
     k = next(k for k, own in enumerate(layout.mechanism.joints) if own.name == joint.name)
     if k in layout.counters:
         assert joint.path is not None

@@ -40,7 +40,9 @@ analysis: {{times: {times}, tolerance: 1e-11}}
 def test_a_rod_whose_ends_run_on_a_ring() -> None:
     """It is a pendulum about the ring's centre; its ends go round and round, and press it across the ring."""
     tables, on = f"x: {RING[0]}, y: {RING[1]}", "x: x, y: y"
-    found = solved(rod(on, f"{on}, initial: {{travel: {math.pi / 6.0}}}", tables, f"travel: {-math.pi / 6.0}, speed: 7"))
+    found = solved(
+        rod(on, f"{on}, initial: {{travel: {math.pi / 6.0}}}", tables, f"travel: {-math.pi / 6.0}, speed: 7")
+    )
     arm, inertia = math.sqrt(0.75), 0.3 + 2.0 * 0.75
     angle = found.coordinates["one"]["travel"] + math.pi / 6.0
     assert angle[-1] > 2.0 * math.pi

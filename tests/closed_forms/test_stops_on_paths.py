@@ -1,4 +1,4 @@
-"""Stops and latches along paths: blows, what holds a bead at rest, and that neither hangs on what the tables are over."""
+"""Stops and latches along paths: blows, what holds a bead at rest; neither hangs on what the tables are over."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ def bead(unit: float, more: str, start: float, speed: float, times: str, gravity
     """A bead of 2 kg on z = x^2/2 from -2 to 2, by tables over travels of which one is `unit` metres along x."""
     x = [-2.0, -1.0, 0.0, 1.0, 2.0]
     s = [at / unit for at in x]
+    held = f"travel: {start / unit}, speed: {speed / unit}"
     return f"""
 heun: 1
 gravity: [0, 0, {gravity}]
@@ -26,7 +27,7 @@ ground: {{points: {{O: [0, 0, 0]}}}}
 bodies:
   bead: {{mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {{P: [0, 0, 0]}}}}
 joints:
-  wire: {{type: curve, from: ground.O, to: bead.P, x: x, z: z, initial: {{travel: {start / unit}, speed: {speed / unit}}}}}
+  wire: {{type: curve, from: ground.O, to: bead.P, x: x, z: z, initial: {{{held}}}}}
 {more}
 analysis: {{times: {times}, tolerance: 1e-11}}
 """

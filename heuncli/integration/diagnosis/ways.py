@@ -19,7 +19,7 @@ from heuncli.tree.layout import Layout
 Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate or a point's, and its rate of change
 
 
-class Way(NamedTuple):
+class OpenWay(NamedTuple):
     """A way with two ends. of: whose coordinate runs along it; told: what leaves it, where; unit: told in how many."""
 
     path: Path
@@ -30,23 +30,25 @@ class Way(NamedTuple):
     about: str
 
 
-def ways_of(mechanism: Mechanism) -> Iterator[Way]:
+def ways_of(mechanism: Mechanism) -> Iterator[OpenWay]:
     """All that have ends."""
     for joint in mechanism.joints:
         if joint.path is not None and not joint.path.period:
             told = f"the point of joint {joint.name} runs off its path, which covers travel"
-            yield Way(joint.path, (joint.name, "travel"), told, "a longer path,", ("m", 1.0), f"joints.{joint.name}")
+            yield OpenWay(
+                joint.path, (joint.name, "travel"), told, "a longer path,", ("m", 1.0), f"joints.{joint.name}"
+            )
     for coupling in mechanism.couplings:
         shape = coupling.rows[0].parts[0].cam if coupling.rows else None
         if shape is not None and not shape.lift.period:
             shaft = mechanism.joints[coupling.rows[0].parts[0].coordinates[0].joint].name
             told = f"the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle"
             longer, about = "a longer lift, or one with a period,", f"couplings.{coupling.name}"
-            yield Way(shape.lift, (shaft, "angle"), told, longer, ("deg", math.degrees(1.0)), about)
+            yield OpenWay(shape.lift, (shaft, "angle"), told, longer, ("deg", math.degrees(1.0)), about)
 
 
 def ways_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
-    """The ways at whose ends something is at t, or by its rate just beyond them; of what is not known nothing is told."""
+    """The ways at whose ends something is at t, or by its rate just beyond them; nothing of what is not known."""
     problems = []
     for way in ways_of(mechanism):
         path, (unit, factor) = way.path, way.unit
@@ -63,7 +65,7 @@ def ways_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving
 
 
 def along_cut_paths(layout: Layout, state: Array, bodies: np.ndarray[Any, Any]) -> dict[tuple[str, str], Any]:
-    """Of the joints along paths that were cut, as the state counts them: travel and speed; bodies: as recovered there."""
+    """Of the joints along paths that were cut, as the state counts them: travel, speed; bodies: as recovered there."""
     found: dict[tuple[str, str], Any] = {}
     for k, at in layout.counters.items():
         joint = layout.mechanism.joints[k]
