@@ -94,7 +94,7 @@ def track_point(scene: cython.pointer[Scene], row: cython.pointer[Closure], s: c
         r: Vec3 = add_scaled(here.r, h, add_scaled(here.slope, 0.5 * h, add_scaled(here.bend, h / 3.0, here.twist)))
         slope: Vec3 = add_scaled(here.slope, h, add_scaled(here.bend, 0.5 * h, here.twist))
         here = PathPoint(r, slope, add_scaled(here.bend, h, here.twist), here.twist)
-    if row.radius > 0.0:
+    if row.radius != 0.0:  # below 0 with h turned over, which is the same roller
         here = beside(here, row.radius, row.h)
     return here
 

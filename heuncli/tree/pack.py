@@ -355,13 +355,16 @@ class _Builder:
 
     def _track(self, k: int, path: Path) -> None:
         """The rows across the path of a joint that was cut, along which a counter counts."""
-        h = Z if self.mechanism.planar else path.off_all_slopes
-        first = self._put_path(path)
+        joint, first = self.mechanism.joints[k], self._put_path(path)
+        h = path.normal if path.normal.any() else Z if self.mechanism.planar else path.off_all_slopes
+        side = -1.0 if joint.one_sided else 1.0  # what holds one way alone does so as a rope does: it must not be pushed
         for faced in range(2):
+            if joint.one_sided and not faced:
+                self._opening(k, joint.name, joint.restitution)
             self._row(k, kernel.TRACK)
             self.closure_rows[-1] = replace(
                 self.closure_rows[-1], lift=first, pieces=len(path.coefficients), period=path.period,
-                radius=path.radius, h=path.normal if path.radius else h, faced=faced, counter=len(self.counters),
+                radius=side * path.radius, h=side * h, faced=faced, counter=len(self.counters),
             )  # fmt: skip
         self.counters[k] = -1
 

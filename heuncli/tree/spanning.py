@@ -9,7 +9,8 @@ turn about the axis without inertia are cut first, for there would be nothing be
 one layer those that make most conditions are kept.
 `line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that nothing carries
 hangs on six freedoms of its own. So does one with a path whose runner is all that holds it. A curve is cut only where
-none but curves, or what must not be cut, make a closed chain: several on one body, or one on a point that is held.
+none but curves, or what must not be cut, make a closed chain: several on one body, or one on a point that is held; and
+where it may lift off.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ def span(mechanism: Mechanism, kept: Collection[int]) -> Spanning:
             joint = mechanism.joints[k]
             closes = k not in forest[joint.b] or joint.b == GROUND or joint.a in free
             if closes and k in kept:
-                raise SolveError(_path_unheld(joint))
+                raise SolveError(_found_from_pose(joint) if joint.one_sided else _path_unheld(joint))
             turned = turned if closes else joint.a
         if turned is None:
             return found
@@ -118,7 +119,7 @@ def _forest(
     forest = defaultdict(list)
     for k in sorted(range(len(joints)), key=urgency):
         joint = joints[k]
-        if JOINTS[joint.kind].in_tree == "never":
+        if JOINTS[joint.kind].in_tree == "never" or joint.one_sided:
             continue
         a, b = root(joint.a), root(joint.b)
         if a == b:
@@ -175,6 +176,14 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",
         hint="leave at least one joint of each closed chain neither driven nor limited nor named",
+    )
+
+
+def _found_from_pose(joint: Joint) -> Problem:
+    return Problem(
+        "over-driven",
+        f"joints.{joint.name} is one-sided: its travel follows from the pose, and nothing drives, limits or names it",
+        hint="name the point itself: body.P.x; or leave one_sided out",
     )
 
 

@@ -95,6 +95,8 @@ def would_let_go(mechanism: Mechanism, name: str) -> str:
     kinds = {coupling.name: coupling.given.type for coupling in mechanism.couplings}
     if kinds.get(name) == "cam":
         return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
+    if any(joint.name == name and joint.one_sided for joint in mechanism.joints):
+        return f"contact lost: the point of joint {name} lifts off its path (with restitution it would fly, and strike)"
     return f"the {kinds.get(name, 'rod')} {name} would have to push (tension_only)"
 
 
