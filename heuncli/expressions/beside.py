@@ -43,15 +43,18 @@ def left(normal: Array, slope: Array) -> Array:
     return np.asarray(across / np.sqrt(np.sum(slope * slope, axis=-1))[..., None])
 
 
-def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
-    """Place, slope and bend p, p', p'' of the centre by those of the path and r''', (..., 3) each."""
+def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
+    """Place of the centre and its derivatives p', p'', p''' by those of the path, (..., 3) each."""
     r, slope, bend, twist = track
-    b = np.sum(slope * slope, axis=-1)
-    a, a1 = np.cross(slope, bend) @ N, np.cross(slope, twist) @ N
+    b, b1 = np.sum(slope * slope, axis=-1), 2.0 * np.sum(slope * bend, axis=-1)
+    b2 = 2.0 * np.sum(bend * bend + slope * twist, axis=-1)
+    a, a1, a2 = (np.cross(one, other) @ N for one, other in ((slope, bend), (slope, twist), (bend, twist)))
     c = R / (b * np.sqrt(b))
     along = (1.0 - c * a)[..., None]
-    along1 = (-c * (a1 - 3.0 * a * np.sum(slope * bend, axis=-1) / b))[..., None]
-    return r + R * left(N, slope), along * slope, along * bend + along1 * slope
+    along1 = (-c * (a1 - 1.5 * a * b1 / b))[..., None]
+    along2 = (-c * (a2 - 3.0 * a1 * b1 / b - 1.5 * a * b2 / b + 3.75 * a * b1 * b1 / (b * b)))[..., None]
+    bent = along * bend + along1 * slope
+    return r + R * left(N, slope), along * slope, bent, along * twist + 2.0 * along1 * bend + along2 * slope
 
 
 def bounds(path: RolledPath) -> tuple[float, float]:

@@ -80,8 +80,12 @@ class Path:
 
     def at(self, s: Array | float) -> tuple[Array, Array, Array]:
         """Place, slope and bend of what runs along the path, or beside it, (..., 3) each; s of any shape."""
-        r, slope, bend, twist = self.track(s)
-        return centre(self.radius, self.normal, (r, slope, bend, twist)) if self.radius else (r, slope, bend)
+        return self.course(s)[:3]
+
+    def course(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """The same with the third derivative."""
+        track = self.track(s)
+        return centre(self.radius, self.normal, track) if self.radius else track
 
     def track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
         """Place r of the path itself and its derivatives r', r'', r''', (..., 3) each; s of any shape."""

@@ -220,8 +220,8 @@ def put_way(states: BodyStates, joint: Joint, slope: Array) -> None:
 def place_beside(layout: Layout, recovered: Recovered, states: BodyStates, k: int) -> tuple[Array, Array, Array]:
     """Of a joint along a path that was cut: its place s there, s' and s'', (n_t,) each.
 
-    The place is that of the pose, on the branch of the path where the state counts it:
-    s' = r' . v / |r'|^2, s'' = r' . (a - r'' s'^2) / |r'|^2 by the motion of the point as the path's body sees it.
+    The place is that beside the point, on the branch of the path where the state counts it: (D - r) . r' = 0. Of that
+    the derivatives, by D, v and a of the point as the path's body sees them; it may lie beside its path, too.
     """
     joint = layout.mechanism.joints[k]
     assert joint.path is not None
@@ -234,7 +234,8 @@ def place_beside(layout: Layout, recovered: Recovered, states: BodyStates, k: in
         a = a - 2.0 * cross_rows(states.omega[:, joint.a], v)
         D, v, a = ((back @ x[..., None])[..., 0] for x in (D, v, a))
     s = joint.path.along(D, recovered.states[:, layout.counters[k]])
-    _, slope, bend = joint.path.at(s)
-    square = np.sum(slope * slope, axis=1)
-    speed = np.sum(slope * v, axis=1) / square
-    return s, speed, np.sum(slope * (a - bend * (speed * speed)[:, None]), axis=1) / square
+    r, slope, bend, twist = joint.path.course(s)
+    square = np.sum(slope * slope - bend * (D - r), axis=1)
+    u = np.sum(slope * v, axis=1) / square
+    again = np.sum(twist * (D - r) - 3.0 * slope * bend, axis=1)
+    return s, u, (np.sum(slope * a + 2.0 * u[:, None] * bend * v, axis=1) + u * u * again) / square

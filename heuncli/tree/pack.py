@@ -357,7 +357,9 @@ class _Builder:
         """The rows across the path of a joint that was cut, along which a counter counts."""
         joint, first = self.mechanism.joints[k], self._put_path(path)
         h = path.normal if path.normal.any() else Z if self.mechanism.planar else path.off_all_slopes
-        side = -1.0 if joint.one_sided else 1.0  # what holds one way alone does so as a rope does: it must not be pushed
+        side = (
+            -1.0 if joint.one_sided else 1.0
+        )  # what holds one way alone does so as a rope does: it must not be pushed
         for faced in range(2):
             if joint.one_sided and not faced:
                 self._opening(k, joint.name, joint.restitution)
