@@ -86,6 +86,7 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     "barrel": SymbolRow((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
     "ball": SymbolRow((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
     "cross": SymbolRow((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
+    "rosette": SymbolRow((ring(5.2, "paper"), *(line(*radial(0.0, 5.2, a)) for a in (90.0, 210.0, 330.0))), "⊛", "%"),
     "square": SymbolRow((box(4.0, 4.0, "ink"),), "■", "#"),
     "dot": SymbolRow((ring(1.6, "paper"),), "•", "o"),
     "slider": SymbolRow((box(9.0, 4.5, "paper"),), "□", "="),

@@ -58,6 +58,13 @@ const AT_POINT = {
     polyline(pen, [place(-R), place(R)], colours.ink, 1.5);
     polyline(pen, [place(0, -R), place(0, R)], colours.ink, 1.5);
   },
+  cv: (pen, at, along, colours) => {
+    ring(pen, ...at, R, colours.paper, colours.ink, 1.8);
+    const place = placer(at, [1, 0]);
+    for (const [x, y] of [[0, -R], [0.87 * R, 0.5 * R], [-0.87 * R, 0.5 * R]]) {
+      polyline(pen, [at, place(x, y)], colours.ink, 1.5);
+    }
+  },
   weld: (pen, at, along, colours) => {
     const place = placer(at, [1, 0]);
     shape(pen, [place(-5, -5), place(5, -5), place(5, 5), place(-5, 5)], colours.ink, colours.paper, 1);

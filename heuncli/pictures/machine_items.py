@@ -35,7 +35,8 @@ LEVEL = 1e-6  # of the depth of a picture: what is as far
 DOWN, UP = (0.0, -1.0), (0.0, 1.0)
 STEEP = 0.2  # rise over run: what goes down less steeply from its support does not hang
 TURNS: Mapping[str, tuple[str, str]] = {  # how it lets turn, seen along the axis and from aside
-    "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"), "all": ("square", "square"),
+    "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"),
+    "alike": ("rosette", "rosette"), "all": ("square", "square"),
     "slider": ("slider", "slider"),
 }  # fmt: skip
 HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("field", "table")}  # along and aside
