@@ -26,6 +26,7 @@ from heuncli.mechanism.model import (
     NamedPoint,
     PairLoad,
     PointLoad,
+    ThreadLoad,
 )
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -158,6 +159,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
             load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
             b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
         )  # fmt: skip
+    assert not isinstance(load, ThreadLoad)  # scenes with such friction are moved as they are given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)
