@@ -54,7 +54,7 @@ class Path:
 
     def turned(self, R: Array) -> Path:
         """The path seen in other axes: R takes components in its own to those."""
-        return replace(self, coefficients=self.coefficients @ R.T)
+        return replace(self, coefficients=self.coefficients @ R.T, normal=R @ self.normal)
 
     def later(self, phase: float) -> Path:
         """The path with every place at a parameter that is greater by the phase."""

@@ -50,7 +50,7 @@ def of_joint(layout: Layout, found: Linearised, joint: Joint) -> dict[str, Array
     rows: dict[str, Array] = {}
     if "angle" in kind.coordinates:
         rows["angle"] = axis @ turn
-    elif kind.ball or kind.turns:
+    elif kind.ball_in_tree or kind.turns:
         rows |= dict(zip(AXES, turn, strict=True))
     if joint.path is not None:
         rows["travel"] = along_path(layout, joint, found, shift)

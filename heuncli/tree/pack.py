@@ -45,7 +45,17 @@ from heuncli.tree.rows import (
     table_of,
 )
 from heuncli.tree.spanning import Hang, Spanning, span
-from heuncli.tree.starts import GivenTree, JointStart, Z, distance, joint_frame, joint_start, pose, to_direction
+from heuncli.tree.starts import (
+    GivenTree,
+    JointStart,
+    Z,
+    bent_direction,
+    distance,
+    joint_frame,
+    joint_start,
+    pose,
+    to_direction,
+)
 from heuncli.tree.tables import limits, symmetric
 
 UNTURNED = np.eye(3)
@@ -300,7 +310,7 @@ class _Builder:
         else:
             freedoms += [(kernel.SHIFT, joint_frame(joint, d), d, *self._shift(joint, d)) for d in kind.shifts]
         point = joint.q if h.reverse else joint.p
-        return self.relative(h.parent, point), R_ref, kind.ball, freedoms
+        return self.relative(h.parent, point), R_ref, kind.ball_in_tree, freedoms
 
     def _universal_rates(self, joint: Joint) -> dict[str, float]:
         _, Ra, _, wa = pose(self.start, joint.a)
@@ -346,12 +356,28 @@ class _Builder:
                 self._row(k, kernel.DOT, e=joint_frame(joint, d), g=f, weight=self.size)
             if "angle" in kind.coordinates:
                 self.counters[k] = -1
+        for k, joint in enumerate(self.mechanism.joints):
+            if JOINTS[joint.kind].turns_alike:
+                self._turning_alike(k)
         self.coupled_rows()
         for stop in self.mechanism.stops:
             for limit, sense in ((stop.low, -1), (stop.high, 1)):
                 if limit is not None:
                     self._limit(stop, limit, sense)
         self._latches()
+
+    def _turning_alike(self, k: int) -> None:
+        """The row of a joint that is a sum of products of directions, cut or not."""
+        joint = self.mechanism.joints[k]
+        first = len(self.part_rows)
+        terms = JOINTS[joint.kind].turn.sum_of_dots
+        self._row(k, kernel.SUM, weight=self.size, part=first, part_count=len(terms))
+        for factor, d, e in terms:
+            own = {"e": joint_frame(joint, d), "g": bent_direction(joint, self.starts[k].R_ref, e)}
+            dot = replace(
+                self.closure_rows[-1], kind=kernel.DOT, weight=1.0, part=0, part_count=0, factor=factor, **own
+            )
+            self.part_rows.append(dot)
 
     def _track(self, k: int, path: Path) -> None:
         """The rows across the path of a joint that was cut, along which a counter counts."""
@@ -441,13 +467,15 @@ class _Builder:
         program: Program = NO_PROGRAM,
         freedom: int = 0,
         weight: float = 1.0,
+        part: int = 0,
+        part_count: int = 0,
     ) -> None:
         """A closure row of a joint; weight: of its gap [m per unit]."""
         own = self.mechanism.joints[joint]
         a, b = self.in_tree(own.a), self.in_tree(own.b)
         p, q = self.relative(own.a, own.p), self.relative(own.b, own.q)
         self.row_joint.append(joint)
-        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, factor=1.0)
+        row = ClosureRow(kind, a, b, p, q, weight, freedom, program, e, g, length, part, part_count, factor=1.0)
         self.closure_rows.append(row)
         self.paths.append(sorted(set(self._path(a)) | set(self._path(b)), reverse=True))
 
@@ -513,9 +541,9 @@ class _Builder:
         return frame_of(with_islands(layout))
 
     def _is_flat(self) -> bool:
-        """Whether the kernel may move a scene declared planar in the plane: couplings and rows of paths need space."""
+        """Whether the kernel may move a scene declared planar in the plane: rows of paths need space."""
         kinds = {row.kind for row in self.closure_rows}
-        return self.mechanism.planar and not self.part_rows and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
+        return self.mechanism.planar and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
 
     def _counter_rows(self) -> list[CounterRow]:
         joints, owners = self.mechanism.joints, self.row_joint
