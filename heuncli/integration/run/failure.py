@@ -8,10 +8,10 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import FARTHEST, Moving, coordinates_at, without_value
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
-from heuncli.integration.diagnosis.ways import ways_left
+from heuncli.integration.diagnosis.ways import Moving, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
