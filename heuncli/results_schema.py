@@ -183,8 +183,9 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
     *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
+    *at("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
-        scalar("tension", "N")),
+        scalar("tension", "N"), scalar("torque", "N·m")),
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
     *at("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its flank, "
@@ -197,8 +198,7 @@ ROWS: tuple[Quantity, ...] = (
         scalar("radial", "N"), scalar("axial", "N")),
     *at("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
         "none comes out", scalar("efficiency", "1")),
-    *at("couplings.COUPLING", "of a screw, about its axis; of a constant-velocity joint ON `to`, about either shaft",
-        scalar("torque", "N·m")),
+    *at("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
     *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
         scalar("tension", "N"), scalar("last_tension", "N")),
     *at("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",

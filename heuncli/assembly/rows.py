@@ -110,13 +110,19 @@ def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
 
 
 def _turned(d: JointCondition, Ra: Array, Rb: Array) -> Array:
-    """T of the rates, in a pose that is closed: unit rows, perpendicular to each other."""
+    """T of the rates, in a pose that is closed: unit rows, perpendicular to each other.
+
+    Two axes turn alike where the one body turns against the other about no line but such as halve their bend.
+    """
     if d.rate.turn == "all":
         return Ra.T
     if d.rate.turn == "axis":
         return d.across @ Ra.T
     if d.rate.turn == "square":
         m = cross(Rb @ d.to_axis, Ra @ d.axis)
+        return (m / math.sqrt(float(m @ m)))[None, :]
+    if d.rate.turn == "alike":
+        m = Ra @ d.axis + Rb @ d.to_axis
         return (m / math.sqrt(float(m @ m)))[None, :]
     return NOTHING
 
@@ -168,6 +174,9 @@ def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array
     if d.rate.turn == "square":
         n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
         turn = turn - (wb - wa) @ (cross(cross(wb, m), n) + cross(m, cross(wa, n)))
+    elif d.rate.turn == "alike":
+        n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
+        turn = turn - (wb - wa) @ (cross(wa, n) + cross(wb, m)) / math.sqrt(float((n + m) @ (n + m)))
     elif len(row.T):
         turn = turn + row.T @ cross(wa, wb)
     return Rows(row.F, row.T, hold, turn, row.r_a, row.r_b)

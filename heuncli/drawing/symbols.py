@@ -81,6 +81,7 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     "barrel": SymbolRow((box(8.0, 4.0, "paper"), line((-13.0, 0.0), (13.0, 0.0))), "○", "o"),
     "ball": SymbolRow((ring(5.2, "paper"), ring(2.6, "ink")), "◉", "@"),
     "cross": SymbolRow((ring(5.2, "paper"), line((-3.7, -3.7), (3.7, 3.7)), line((-3.7, 3.7), (3.7, -3.7))), "⊗", "x"),
+    "rosette": SymbolRow((ring(5.2, "paper"), *(line(*radial(0.0, 5.2, a)) for a in (90.0, 210.0, 330.0))), "⊛", "%"),
     "square": SymbolRow((box(4.0, 4.0, "ink"),), "■", "#"),
     "dot": SymbolRow((ring(1.6, "paper"),), "•", "o"),
     "slider": SymbolRow((box(9.0, 4.5, "paper"),), "□", "="),
@@ -95,6 +96,10 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     ),
     "bed": SymbolRow(hatched(7.0, 15.0), "", "/"),
     "clamp": SymbolRow(hatched(4.0, 10.0), "", "/"),
+    "road": SymbolRow(hatched(0.0, 15.0), "", "/"),
+    # what a coordinate comes up against, x into it; what holds it there
+    "stop": SymbolRow((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
+    "latch": SymbolRow((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
     # of bodies
     "centre": SymbolRow((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
     "mass": SymbolRow((ring(3.4, "ink"),), "●", "*"),

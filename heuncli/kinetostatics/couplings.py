@@ -7,6 +7,7 @@ the instants an axis of causes where they are told by cause.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -142,17 +143,20 @@ class CouplingLoads:
             whole[..., r] = multiplier + more[..., r]
         return self.of_multipliers(whole)
 
-    def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
-        """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
+    def on_bodies(self, beside: Sequence[Action] = ()) -> dict[int, tuple[Array, Array, Array]]:
+        """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place.
+
+        beside: what it exerts besides, as the pretension of a belt.
+        """
         found: dict[int, tuple[Array, Array, Array]] = {}
         loading = (own for own in self.parts if not own.part.counts_alone)
-        for part in sorted(loading, key=lambda own: not own.part.lies):  # of sheaves their centres come first
-            for body, place, own, turning in part.on_both:
-                at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
-                found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
-        for end, own, turning in self.friction.on_bodies() if self.friction is not None else ():
-            at, force, moment = found[end.body]
-            found[end.body] = at, force + own, moment + turning + cross_rows(end.position - at, own)
+        parts = sorted(loading, key=lambda own: not own.part.lies)  # of sheaves their centres come first
+        rubs = () if self.friction is None else (self.friction,)
+        held = (on for part in parts for on in part.on_both)
+        given = ((end.body, end.position, F, M) for action in (*beside, *rubs) for end, F, M in action.on_bodies())
+        for body, place, own, turning in chain(held, given):
+            at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
+            found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
         return found
 
 

@@ -13,28 +13,29 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
 from heuncli.joint_kinds import JOINTS, TYPES, Kind
-from heuncli.mechanism.couplings import Coupling
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machine
+from heuncli.scenery.machine import BodyLook, JointLook, LineLook, Machine
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, silhouette, solid_of
 from heuncli.scenery.views import SceneView
 from heuncli.spec.models import Bushing, Spec, Spring
+from heuncli.spec.names import GROUND
 
 PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
 DRIVEN, APPLIED = 3, 3
 ALONG = 0.35  # of a unit axis that is seen: what shows less of it points at the eye
 MOST_NAMED = 60  # bodies and joints: beyond that a picture of names alone
 MOST_CENTRES = 40  # bodies whose centres of mass are marked
-BAR, ARM, THIN = 3.0, 2.0, 0.7  # pixels: a body that is lines, lines beside shapes, of an instant not the first
+BAR, ARM, RIM, THIN = 3.0, 2.0, 1.3, 0.7  # pixels: a body that is lines, lines beside shapes, on them, later ones
 LEVEL = 1e-6  # of the depth of a picture: what is as far
 DOWN, UP = (0.0, -1.0), (0.0, 1.0)
 STEEP = 0.2  # rise over run: what goes down less steeply from its support does not hang
 TURNS: Mapping[str, tuple[str, str]] = {  # how it lets turn, seen along the axis and from aside
-    "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"), "all": ("square", "square"),
+    "free": ("ball", "ball"), "axis": ("circle", "barrel"), "square": ("cross", "cross"),
+    "alike": ("rosette", "rosette"), "all": ("square", "square"),
     "slider": ("slider", "slider"),
 }  # fmt: skip
 HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("field", "table")}  # along and aside
@@ -44,7 +45,7 @@ HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("fi
 class Stood:
     """A machine where it stands at some instants, and how it is seen; size: of the unit that is shown in a metre.
 
-    centers: of mass, in body axes. ropes: over sheaves, as they run at the start.
+    centers: of mass, in body axes.
     """
 
     spec: Spec
@@ -53,7 +54,6 @@ class Stood:
     poses: Poses
     view: SceneView
     size: float
-    ropes: tuple[Coupling, ...] = ()
 
     def seen(self, body: str, points: Array, k: int) -> Array:
         """Where a body's points (..., 3) are seen at an instant, (..., 2) in the unit shown."""
@@ -150,11 +150,11 @@ def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPi
             lines = (Strokes(stood.seen(body.name, edges, k), pen, THIN),)
         shape = Polygon(body.name, around, pen, solid=not thin, width=THIN if thin else 1.3)
         yield SeenPiece(float(stood.view.depth(places).mean()), area(around), (shape, *lines))
-    for line in body.lines:
+    for number, line in enumerate(body.strokes):
         if len(line) > 1:
             places = stood.poses.at(body.name, line, k)
             ends = stood.seen(body.name, line, k)
-            width = ARM if stood.solids[body.name] else BAR
+            width = RIM if number >= len(body.bars) else ARM if stood.solids[body.name] else BAR
             strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
             yield SeenPiece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
 
@@ -231,7 +231,7 @@ def joint(stood: Stood, look: JointLook, k: int, *, thin: bool = False) -> list[
 
 def _ground(stood: Stood, look: JointLook, kind: Kind, along: tuple[float, float] | None, k: int) -> Iterator[Symbol]:
     """The ground at a joint that stands on it; along: its axis as it is seen, None: towards the eye."""
-    if GROUND not in (look.a, look.b):
+    if GROUND not in (look.a, look.b) or kind.hold.asks == "curve":
         return
     other = look.b if look.a == GROUND else look.a
     place = stood.seen(look.b, look.q, k)
@@ -273,9 +273,8 @@ def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[It
 
 def strands(stood: Stood, k: int) -> Iterator[Strokes]:
     """The strands of belts."""
-    for body, lines in stood.machine.strands.items():
-        for places in lines:
-            yield Strokes(stood.seen(body, places, k)[None], APPLIED, ARM)
+    for belt in stood.machine.belts:
+        yield Strokes(stood.seen(belt.carrier, belt.strands, k), APPLIED, ARM)
 
 
 def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tests.oracle.gears import Teeth, load, teeth
+from tests.oracle.gears import Teeth, load, pulls, teeth
 from tests.oracle.read import State, model, placed, start_state
 from tests.oracle.rows import assemble, coordinates, velocities
 from tests.oracle.solve import accelerations, acting, scene_length, wrench_map
@@ -135,7 +135,10 @@ def on_bodies(c: Case, name: str, state: State, multiplier: float) -> dict[str, 
     (of,) = (of for of in teeth(c.read) if of.name == name)
     place, force, moment = load(c.read, of, state, multiplier)
     wrench = np.concatenate([force, moment + np.cross(place, force)])
-    return {of.second: wrench, of.first: -wrench}
+    found = {of.second: wrench, of.first: -wrench}
+    for body, at, pull in pulls(c.read, state).get(name, ()):
+        found[body] = found[body] + np.concatenate([pull, np.cross(at, pull)])
+    return found
 
 
 def as_the_oracle_says(c: Case) -> None:

@@ -77,7 +77,7 @@ def test_what_is_not_held_in_the_plane_is_free(kind: Kind) -> None:
 @pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
 def test_every_kind_has_its_forms_in_the_plane(kind: Kind) -> None:
     """With its axis along the normal and across it; without an axis one."""
-    assert (kind.name, True) in FLAT or kind.name == "curve"  # along which a scene is moved as it is given
+    assert (kind.name, True) in FLAT
     assert not kind.has_axis or (kind.name, False) in FLAT
 
 

@@ -6,9 +6,10 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, lifts_left, paths_left, without_value
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
+from heuncli.integration.diagnosis.ways import ways_left
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.integration.run.progress import Progress
@@ -44,8 +45,7 @@ def ways_ended(progress: Progress) -> list[Problem]:
     if not on_cams and all(joint.path is None for joint in mechanism.joints):
         return []
     there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
-    ended = mechanism, t, progress.last * 2.0**-FARTHEST, there
-    return paths_left(*ended) + lifts_left(*ended)
+    return ways_left(mechanism, t, progress.last * 2.0**-FARTHEST, there)
 
 
 def loads_ended(progress: Progress) -> list[Problem]:

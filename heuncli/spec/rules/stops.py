@@ -51,8 +51,6 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
             assert kind is not None
             able = named([kind for kind in TYPES.values() if limitable(kind)], "and")
             hint = f"a {kind.name} has {' and '.join(fit)}" if fit else f"stops limit {able}"
-            if kind.follows_path:
-                hint = f"the run may end there: until: {stop.joint}.travel > 0.2; what it runs against is a spring"
             yield Violation(where, f"a {kind.name} has no {quantities[0]} to be limited", hint, key=True)
             continue
         low, high = getattr(stop, quantities[0])

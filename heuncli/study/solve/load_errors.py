@@ -40,6 +40,9 @@ CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave ope
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
+Quantity = tuple[str, Array]  # of couplings: what it is, of UNITS, and values (n, k, 3) or (n, k, 1)
+UNITS = {"force": "N", "moment": "N·m", "place": "m", "angle": "rad"}
+
 # Kinds, and the reports that tell something of them: what nobody asks for is not compared.
 TOLD_IN = {
     "reactions": {"joints", "foundation"},
@@ -130,7 +133,12 @@ class LoadErrors:
             joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
-            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupled, terms)
+            coupling_told: Sequence[Quantity] = ()
+            if couplings:
+                from heuncli.study.solve.coupling_errors import told_of  # few scenes have them
+
+                coupling_told = [*told_of(couplings, applied, self.setup.scene.mechanism.joints, states)]
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupling_told, terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
@@ -189,13 +197,16 @@ class LoadErrors:
         far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
         """Reactions, in the axes in which they are told, those of couplings among them, and drives."""
         F, M = terms.rounding
-        for some in (joints, coupled):
-            if some:
-                self.take(("reactions", "force"), np.stack([x.force for x in some], axis=1), F, terms.force)
-                self.take(("reactions", "moment"), np.stack([x.moment for x in some], axis=1), M, terms.moment)
+        if joints:
+            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        none = np.zeros(len(F))
+        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (none, none), "angle": (none, none)}
+        for name, values in coupled:
+            self.take(("reactions", name), values, *of[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
@@ -282,6 +293,7 @@ class LoadErrors:
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
                 found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
+        found |= {("reactions", UNITS[x]): of["reactions", x] for x in ("place", "angle") if ("reactions", x) in of}
         found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
         found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
         return found | self.errors_by_cause()
