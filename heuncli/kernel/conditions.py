@@ -18,6 +18,7 @@ if not cython.compiled:
     from heuncli.kernel.plane_rows import measure_in_plane
     from heuncli.kernel.rolling import rolling_row
     from heuncli.kernel.scene import (
+        ALONG,
         ARC,
         CAM,
         DOT,
@@ -26,6 +27,7 @@ if not cython.compiled:
         ROD,
         STRAND,
         SUM,
+        TRACK,
         TURN,
         WOUND,
         Closure,
@@ -33,6 +35,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
+    from heuncli.kernel.tracks import track_row
     from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import Carried
 
@@ -51,7 +54,7 @@ def condition(
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind <= TURN and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+    if scene.flat and is_in_plane(row):
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
@@ -73,8 +76,17 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         arc_part(scene, row)
     elif row.kind == WOUND:
         wound_part(scene, row)
+    elif row.kind == TRACK or row.kind == ALONG:
+        track_row(scene, row)
     else:
         rolling_row(scene, row)
+
+
+def is_in_plane(row: cython.pointer[Closure]) -> cython.bint:
+    """Whether it is one of those that a flat scene has formulae for: of directions the others look along z."""
+    if row.kind <= DOT:
+        return row.e.z == 0.0 and row.g.z == 0.0
+    return row.kind == ROD or row.kind == TURN or row.kind == MESH
 
 
 def enter(scene: cython.pointer[Scene], part: cython.pointer[Closure]) -> cython.void:

@@ -16,15 +16,19 @@ from heuncli.kernel.structs import Pointer, Record, Struct
 # Kinds of freedoms, loads and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
-TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-BUSHING_SHIFT, BUSHING_TURN = range(11, 13)
+TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
+BUSHING_SHIFT, BUSHING_TURN = range(12, 14)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
 ALONG_LINE = 3  # of a load: its length; before that the components of its strain
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
+TRACK, ALONG = range(10, 12)  # of paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
+GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
+    5
+)  # what presses where a load rubs: nothing found, the joint's force or
+# parts of it, the multiplier of a coupling's row
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
 
 
@@ -126,13 +130,14 @@ class Load(Record):
     coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
-    factor: float  # of a force or couple: by which the vector is to be multiplied
+    factor: float  # of a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
+    # its moment [1/m]
     offset: float
     across: Vec3  # of a joint that was cut: a direction across the axis, in a
     mark: Vec3  # and the one in b that agrees with it at angle 0
     presses: int  # of friction: GIVEN, or what of the joint's own load presses; the coefficient is then by that
     held_by: int  # the body whose joint it is; -1: the joint was cut
-    row: int  # of a joint that was cut: its first closure row
+    row: int  # of a joint that was cut: its first closure row; of a thread its own
     row_count: int
     reach: float  # of ENDS: the distance between the two ends [m]
     frame: Mat3  # of a bushing: its axes, in a
@@ -149,7 +154,7 @@ class Load(Record):
     strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
-    unit: Vec3  # of friction by what presses: force or moment on b where that is 1
+    unit: Vec3  # of friction by what presses: force or moment on b where that is 1; of a thread the moment
     pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
 
 
@@ -166,6 +171,7 @@ class Closure(Record):
     STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
     b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
     runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
+    TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length.
     """
 
     kind: int
@@ -195,14 +201,15 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
-    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
     pieces: int
     period: float
     swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
-    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
     radius: float  # of the roller; 0: a point
     pivot: Vec3
     h: Vec3
+    counter: int  # of a TRACK: which counter counts its place
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -269,14 +276,15 @@ class PathPiece(Record):
 
 
 class Counter(Record):
-    """The angle of a pin that was cut, counted on over many turns as a state of its own."""
+    """The angle of a pin that was cut, counted on over many turns as a state of its own; or a place on a path."""
 
     a: int
     b: int
     at: int  # where it stands in the state
     axis: Vec3  # in a
+    track: int  # of a place: 1 + its TRACK among the closure rows; 0: an angle
 
-    counted: float  # the state's angle, which is right to half a turn
+    counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
 
 class Variable(Record):

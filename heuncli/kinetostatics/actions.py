@@ -15,7 +15,18 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, BushingLoad, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
+from heuncli.mechanism.model import (
+    GROUND,
+    BushingLoad,
+    Joint,
+    JointLoad,
+    Load,
+    Mechanism,
+    PairLoad,
+    PointLoad,
+    Spread,
+    ThreadLoad,
+)
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -158,6 +169,8 @@ def _ends(
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
     if isinstance(load, BushingLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, load.p, apart=True)
+    if isinstance(load, ThreadLoad):
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, None, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)
 

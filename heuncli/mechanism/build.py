@@ -81,11 +81,11 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import couplings_of, pretensions  # few scenes have them
+        from heuncli.mechanism.build_couplings import couplings_of, loads_beside  # few scenes have them
 
         number = {name: k for name, (k, _) in joints.items()}
         couplings = couplings_of(spec, made, bodies, number)
-        loads += pretensions(spec, made, bodies, number)
+        loads += loads_beside(spec, made, bodies, number)
     return Mechanism(
         title=spec.title,
         planar=planar,
@@ -150,7 +150,7 @@ def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
         angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
         stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
         drive=None, restitution=j.restitution, bearing=j.bearing,
-        p_name=j.p_name, q_name=j.q_name, path=j.path,
+        p_name=j.p_name, q_name=j.q_name, path=j.path, one_sided=j.one_sided,
     )  # fmt: skip
 
 

@@ -100,6 +100,11 @@ class CouplingPart:
         return self.kind in ("arc", "wound")
 
     @property
+    def counts_alone(self) -> bool:
+        """Whether it counts by coordinates for another part, and loads nothing."""
+        return self.kind == "mesh" and self.a == self.b
+
+    @property
     def places(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it looks at them, body axes."""
         if self.is_couple:
@@ -148,7 +153,12 @@ class Coupling:
     @property
     def bodies(self) -> frozenset[int]:
         """All bodies that it looks at, without the ground."""
-        return frozenset(i for row in self.rows for part in row.parts for i in part.bodies if i != GROUND)
+        return self.ends - {GROUND}
+
+    @property
+    def ends(self) -> frozenset[int]:
+        """The same, with the ground where it looks at that."""
+        return frozenset(i for row in self.rows for part in row.parts for i in part.bodies)
 
     @property
     def law(self) -> Expression | None:

@@ -135,7 +135,7 @@ JOINTS = TablePlan(
     "joints",
     "joints",
     "joint",
-    ("force", "moment", "axial", "radial", "tilting", "tension", "pressure", "drive"),
+    ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
     lambda results, labels: (
         f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
     ),
@@ -151,7 +151,7 @@ STOPS = TablePlan(
 )
 COUPLED = (
     *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
-    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
+    *("radial", "axial", "torque", "efficiency", "tight", "slack", "tension", "last_tension"),
 )
 COUPLINGS = TablePlan(
     "joints",

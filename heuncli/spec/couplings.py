@@ -83,6 +83,17 @@ class Gear(NamedTuple):
         return joints_of(self.terms)
 
 
+class ThreadFriction(NamedTuple):
+    """What rubs in a thread: coefficient of its flanks as in a square thread, at the mean radius [m].
+
+    Full where the spindle turns faster than `speed` [rad/s], times tanh(rate/speed).
+    """
+
+    coefficient: float
+    radius: float
+    speed: float
+
+
 class Screw(NamedTuple):
     """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
 
@@ -91,6 +102,7 @@ class Screw(NamedTuple):
 
     terms: tuple[Term, ...]
     lead: float
+    friction: ThreadFriction | None = None
     type: Literal["screw"] = "screw"
 
     @property
@@ -191,20 +203,6 @@ class Rope(NamedTuple):
         return frozenset(x.end.body for x in self.through if x.grips)
 
 
-class ConstantVelocity(NamedTuple):
-    """What makes of a ball a constant-velocity joint: shafts along axis in `from`, to_axis in `to`, turn alike."""
-
-    joint: str
-    axis: tuple[float, float, float]
-    to_axis: tuple[float, float, float]
-    type: Literal["cv"] = "cv"
-
-    @property
-    def joints(self) -> tuple[str, ...]:
-        """The ball."""
-        return (self.joint,)
-
-
 Coupling = (  # a union of the classes here
-    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope | ConstantVelocity
+    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope
 )

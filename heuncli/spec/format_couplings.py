@@ -17,6 +17,7 @@ from heuncli.spec.fields import (
     LengthInTime,
     Lift,
     Number,
+    Rate,
     Switch,
 )
 
@@ -43,12 +44,23 @@ class GearEntry(Entry):
     helix: Angle = 0.0
 
 
+class ThreadFrictionEntry(Entry):
+    """What rubs in a thread."""
+
+    coefficient: Number | None = None
+    efficiency: Number | None = None
+    radius: Length
+    flank_angle: Angle = 0.0
+    speed: Rate
+
+
 class ScrewEntry(Entry):
     """A thread."""
 
     type: Literal["screw"]
     of: list[str]
     lead: Length
+    friction: Annotated[ThreadFrictionEntry, AsText()] | None = None
 
 
 class BeltEntry(Entry):
@@ -110,19 +122,8 @@ class RopeEntry(Entry):
     restitution: Number | None = None
 
 
-class ConstantVelocityEntry(Entry):
-    """What makes of a ball a constant-velocity joint."""
-
-    type: Literal["cv"]
-    joint: str
-    axis: Direction
-    to_axis: Direction | None = None
-
-
-CouplingEntry = (
-    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
-)
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
-    "cam": CamEntry, "rope": RopeEntry, "cv": ConstantVelocityEntry,
+    "cam": CamEntry, "rope": RopeEntry,
 }  # fmt: skip

@@ -11,7 +11,16 @@ from heuncli import tolerances
 from heuncli.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.joint_kinds import JOINTS
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
+from heuncli.mechanism.model import (
+    GROUND,
+    BushingLoad,
+    JointLoad,
+    Mechanism,
+    NamedPoint,
+    PairLoad,
+    PointLoad,
+    ThreadLoad,
+)
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.shapes.rotations import perpendicular
@@ -119,6 +128,8 @@ class _LoadRows:
                 self._pair_load(load, values)
             elif isinstance(load, BushingLoad):
                 self._bushing(load, own)
+            elif isinstance(load, ThreadLoad):
+                self._thread(load)
             else:
                 self._joint_load(load, values)
 
@@ -166,6 +177,30 @@ class _LoadRows:
                     resistances=elastic.damping,
                 )
             )
+
+    def _thread(self, load: ThreadLoad) -> None:
+        row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
+        self.made.append(
+            LoadRow(
+                kernel.THREAD_FRICTION,
+                self.frame.in_tree(load.a),
+                self.frame.in_tree(load.b),
+                NO_PROGRAM,
+                NO_PROGRAM,
+                NO_PROGRAM,
+                ONE,
+                in_body=1,
+                q=self.frame.relative(load.b, load.q),
+                coefficient=load.coefficient,
+                axis=load.axis,
+                speed=load.speed,
+                factor=load.factor,
+                presses=kernel.THRUST_OF_ROW,
+                held_by=GROUND,
+                row=row,
+                row_count=1,
+            )
+        )
 
     def _joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]
