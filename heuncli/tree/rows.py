@@ -206,6 +206,7 @@ class WatchRow:
     program: Program
     curved: int
     condition: int
+    load: int = -1
 
 
 @record
