@@ -208,6 +208,7 @@ class WatchRow:
     program: Program
     curved: int
     condition: int
+    load: int = -1
 
 
 @record
