@@ -100,8 +100,7 @@ def faults_of_roller(at: Path_, joint: f.CurveJoint, path: Path, normal: Directi
         yield Violation((*at, "radius"), message, hint)
 
 
-@rule("restitution")
-def restitution_of_a_path(draft: DraftDocument) -> Iterator[Violation]:
+def struck(draft: DraftDocument) -> Iterator[Violation]:
     """What strikes a path may lift off it, gives back at most its speed, and drags at nothing while it flies."""
     for name, joint in draft.document.joints.items():
         if not isinstance(joint, f.CurveJoint) or joint.restitution is None:
