@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from heuncli.reduction.model import Reduced
@@ -9,8 +10,11 @@ from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
 from tests.shared.coupled_in_a_plane import ELEMENTS, coupled_flat
+from tests.shared.coupled_scenes import ELEMENTS as IN_SPACE
+from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.reduced import pair, same
 from tests.shared.scenes import moving
+from tests.shared.split_bodies import split
 
 TIMES = (0.0, 0.1, 0.2)
 WAYS = ("drawn", "welded", "declared")
@@ -27,6 +31,19 @@ def test_in_a_plane(kind: str) -> None:
         assert any(sentence.startswith("solved in the plane") for sentence in both.told)
         reduced = both.small.setup.reduced
         assert how != "welded" or (reduced is not None and len(reduced.told + reduced.kept) > 1)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("kind", IN_SPACE)
+def test_between_bodies_that_are_one(kind: str) -> None:
+    """In space, every kind: what a coupling looks at is a part of what moves."""
+    seed = 40 + list(IN_SPACE).index(kind)
+    scene = split(coupled_scene(seed, (kind,)), np.random.default_rng(seed))
+    for coupling in scene.get("couplings", {}).values():
+        coupling.pop("friction", None)  # a thread that rubs is moved as it is given
+    both = pair(load(f"{kind} {seed}", to_yaml(scene)))
+    same(both)
+    assert any("one body" in sentence for sentence in both.told)
 
 
 SCENE = """\
