@@ -19,6 +19,7 @@ MODULES = (
     "meshing",
     "sheaves",
     "rolling",
+    "tracks",
     "conditions",
     "closures",
     "orthogonal",

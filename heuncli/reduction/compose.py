@@ -11,12 +11,18 @@ from heuncli.reduction.model import Reduced, Reduction
 from heuncli.stages import ANEW, Stages
 from heuncli.tree.prepare import PreparedScene
 
+
+def any_alike(scene: PreparedScene) -> bool:
+    """Whether a joint bends in any plane, and so is none of a flat scene."""
+    return any(JOINTS[joint.kind].turns_alike for joint in scene.mechanism.joints)
+
+
 # in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
 STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
     ("welded_bodies", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
     ("immobile_bodies", lambda scene: any(k < len(scene.mechanism.joints) for k in scene.layout.rows)),
     ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
-    ("plane.step", lambda scene: bool(scene.mechanism.bodies)),
+    ("plane.step", lambda scene: bool(scene.mechanism.bodies) and not any_alike(scene)),
 )
 
 

@@ -29,7 +29,8 @@ def test_keys(kind: Kind) -> None:
     keys |= {"to_axis"} if kind.to_axis != "never" else set()
     keys |= {"initial"} if kind.coordinates else set()
     keys |= {"length", "tension_only", "restitution"} if kind.keeps_distance else set()
-    keys |= {"x", "y", "z", "radius", "normal", "bearing"} if kind.follows_path else set()  # in place of an axis
+    own = {"x", "y", "z", "radius", "normal", "one_sided", "restitution", "bearing"}
+    keys |= own if kind.follows_path else set()  # in place of an axis
     keys |= {"bearing"} if kind.hold in (POINT, LINE) and kind.turn in (FREE, ABOUT_AXIS) else set()  # a journal turns
     assert set(keys_of(f.JOINTS[kind.name])) == keys
 
