@@ -108,6 +108,41 @@ def test_flat_but_for(name: str) -> None:
     assert any(why in sentence for sentence in found.kept), found.kept
 
 
+BEVEL = """\
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {points: {A: [0.1, 0, 0], B: [0, 0.1, 0]}}
+bodies:
+  one: {mass: 1, center: [0, 0, 0], inertia: [0.02, 0.01, 0.01], points: {c: [0, 0, 0]}}
+  two: {mass: 1, center: [0, 0, 0], inertia: [0.01, 0.02, 0.01], points: {c: [0, 0, 0]}}
+joints:
+  first: {type: pin, from: ground.A, to: one.c, axis: [1, 0, 0], initial: {rate: 10}}
+  second: {type: pin, from: ground.B, to: two.c, axis: [0, 1, 0]}
+couplings: {m: {type: gear, of: [first, second], teeth: [20, 20]}}
+analysis: {duration: 0.2, samples: 3}
+"""
+
+
+def test_a_scene_in_space_tells_which_coupling_makes_it_one() -> None:
+    """Its joints alone would leave it in a plane across either axis."""
+    found = set_up(load("scene.yaml", BEVEL)).reduced
+    assert found is not None
+    assert not found.told
+    assert found.kept == ("not solved in the plane across x: couplings.m counts second.angle, a coordinate out of it",)
+
+
+def test_what_the_drives_leave_nothing_free_of_is_not_made_smaller() -> None:
+    """Nothing is integrated; but where a method is asked for, and then in the plane."""
+    driven = SCENE.format(
+        tail=gear() + "\ndrives: {m: {joint: first, angle: t}, n: {joint: hang, angle: 2*t}}", hang="pin", second="pin",
+        axis="[0, 0, 1]", about=", axis: [0, 0, 1]", p=0.0,
+    )  # fmt: skip
+    assert set_up(load("scene.yaml", driven)).reduced is None
+    asked = set_up(load("scene.yaml", driven), "DOP853").reduced
+    assert asked is not None
+    assert in_plane(asked)
+
+
 FLAT = {
     "spur gears": (gear(), "ball"),
     "teeth that push along the axes of what cannot tilt": (gear(", helix: 0.3, pressure_angle: 0.35"), "pin"),
