@@ -318,15 +318,25 @@ def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
         kind = kind_of(look, stood.spec)
         if kind.keeps_distance:
             continue
-        axis = look.axis / np.linalg.norm(look.axis)
+        axis = way_along(stood, look, k) if kind.follows_path else look.axis
+        axis = axis / np.linalg.norm(axis)
         seen = stood.seen_along(look.a, axis, k)
         symbol, along = "coil", (1.0, 0.0)
         if what != "turn_spring":
-            slides = bool(kind.shifts) and kind.turn.asks == "all"
+            slides = kind.follows_path or (bool(kind.shifts) and kind.turn.asks == "all")
             symbol = "turning" if stood.sense(look.a, axis, k) >= 0.0 else "turning back"
             symbol = "sliding" if slides else symbol
             along = (float(seen[0]), float(seen[1])) if slides and seen.any() else along
         yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, pen, f"{name}: {what} in {joint_name}")
+
+
+def way_along(stood: Stood, look: JointLook, k: int) -> Array:
+    """Which way a path goes on where its point is, axes of its body; where it crosses itself one of both."""
+    joint = stood.spec.joints[look.name]
+    assert joint.path is not None
+    D = stood.poses.at(look.b, look.q, k) - stood.poses.at(look.a, look.p, k)
+    D = D if look.a == GROUND else D @ stood.poses.attitudes[look.a][k]
+    return np.asarray(joint.path.at(float(joint.path.nearest(D)))[1])
 
 
 def marks(stood: Stood, k: int) -> Iterator[Symbol]:
