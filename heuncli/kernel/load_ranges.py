@@ -15,14 +15,18 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, norm
+    from heuncli.kernel.algebra import norm
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.libm import INFINITY
+    from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
     from heuncli.kernel.programs import Bounds, Span
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, Load, Scene, Variable
+    from heuncli.kernel.rope_ranges import bounds_of_rope
+    from heuncli.kernel.ropes import motion_of_rope
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
     from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
+    from heuncli.kernel.values import RopeBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966
 
@@ -33,7 +37,11 @@ def load_at_end(
     """A variable that is of a load as the bodies stand: length and its rate; a strain, and how long the span is."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
-    if variable.part == ALONG_LINE:
+    if load.kind == ROPE:
+        rope: RopeMotion = motion_of_rope(scene, load)
+        places[i] = rope.S
+        rates[i] = rope.rate
+    elif variable.part == ALONG_LINE:
         places[i] = norm(span_of(scene, load))
         rates[i] = rate_of_length(scene, load)
     else:
@@ -59,7 +67,16 @@ def range_of_load(
     fastest: cython.double = V
     bend: cython.double = 0.5 * V * T
     second: Bounds = anything()
-    if load.a == load.b:
+    if load.kind == ROPE:
+        rope: RopeBounds = bounds_of_rope(scene, points, load, T)
+        V = rope.rate
+        fastest = V
+        bend = 0.5 * V * T
+        open_by = scene.limits.rounding * rope.far
+        if rope.second < INFINITY:
+            bend = 0.125 * rope.second * T * T
+            second = Bounds(-rope.second, rope.second)
+    elif load.a == load.b:
         fastest = 0.0
         bend = 0.0
         second = Bounds(0.0, 0.0)
@@ -99,32 +116,3 @@ def range_of_load(
 def between(a: cython.double, b: cython.double, beyond: cython.double) -> Bounds:
     """What lies between two numbers, or so far beyond them."""
     return Bounds(a - beyond, b + beyond) if a < b else Bounds(b - beyond, a + beyond)
-
-
-def acceleration_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest acceleration of a body's point over the part."""
-    if body < 0:
-        return 0.0
-    # the dense outputs of coordinates and of rates agree to the error of a step, far better than to an eighth
-    spin: cython.double = points.spin[body]
-    return 1.125 * (points.pull[body] + (points.twist[body] + spin * spin) * norm(q))
-
-
-def speed_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest speed of a body's point over the part."""
-    return 1.125 * (points.speed[body] + points.spin[body] * norm(q)) if body >= 0 else 0.0
-
-
-def reach_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """How far a body's point may be from the origin."""
-    return norm(q) + (points.reach[body] if body >= 0 else 0.0)
-
-
-def spin_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast a body may turn."""
-    return 1.125 * points.spin[body] if body >= 0 else 0.0
-
-
-def twist_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast that may change."""
-    return 1.125 * points.twist[body] if body >= 0 else 0.0

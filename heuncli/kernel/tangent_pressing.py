@@ -15,13 +15,14 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scaled, sub
     from heuncli.kernel.closures import push_closures
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.pressing import carried_force, carried_moment, pressed_along, put_ends, put_parts
     from heuncli.kernel.scene import ENDS, SHIFT_FRICTION, WHOLE, BodyAtState, BodyTangent, Closure, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_closures import row_along
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_motion import point_along, swung
-    from heuncli.kernel.tree import balance, direction_of
+    from heuncli.kernel.tree import balance
     from heuncli.kernel.values import LoadTangent
 
 

@@ -94,6 +94,21 @@ class StrandRate(Value):
     bend: float
 
 
+class RopeMotion(Value):
+    """The length of a rope and its rate."""
+
+    S: float
+    rate: float
+
+
+class RopeBounds(Value):
+    """How large rate and second derivative of a rope's length may be, and how far from the origin it may be."""
+
+    rate: float
+    second: float
+    far: float
+
+
 class VectorRate(Value):
     """A vector and its rate."""
 

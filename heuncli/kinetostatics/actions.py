@@ -15,7 +15,18 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, BushingLoad, Joint, JointLoad, Load, Mechanism, PairLoad, PointLoad, Spread
+from heuncli.mechanism.model import (
+    GROUND,
+    BushingLoad,
+    Joint,
+    JointLoad,
+    Load,
+    Mechanism,
+    PairLoad,
+    PointLoad,
+    RopeLoad,
+    Spread,
+)
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -88,7 +99,6 @@ class AppliedLoad:
     value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
     that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint,
     the magnitude where that has no one axis (of which a turn spring's angle is the length, other loads have none).
-    potential: its own, (n_t,) [J]; 0 of what has none.
     strain: of a bushing its shift and its turn, (n_t, 2, 3) [m], [rad], in its own axes.
     """
 
@@ -98,18 +108,19 @@ class AppliedLoad:
     length: Array
     rate: Array
     power: Array
-    potential: Array
     strain: Array | None = None
 
 
 def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered) -> list[AppliedLoad]:
-    """The applied loads in the order of the spec; of a joint's load the parts of its several motions together.
+    """The applied loads in the order of the spec, without ropes; of a joint's load the parts of its several motions.
 
     A load in a joint acts where the joint does, to the last bit: both pass a cut at one instant.
     """
     loads: list[AppliedLoad] = []
     first: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, own in mechanism.load_rows():
+        if isinstance(load, RopeLoad):
+            continue  # its coupling tells what it exerts
         joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
         rows = recovered.loads[:, own]
         if isinstance(load, PointLoad) and load.spread is not None:
@@ -123,8 +134,7 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
         strain = rows["strain"] if isinstance(load, BushingLoad) else None
-        power, potential = (rows[name].sum(axis=1) for name in ("power", "potential"))
-        loads.append(AppliedLoad(load, action, value, span, rate, power, potential, strain))
+        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
     return loads
 
 
@@ -144,7 +154,7 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
     action = Action("load", load.name, end, None, force, moment, along)
     none = np.zeros(len(force))
     power = sum((row["power"].sum(axis=1) for _, row in parts), none)
-    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power, none)
+    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power)
 
 
 def _ends(

@@ -14,6 +14,7 @@ from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
+from heuncli.mechanism.model import RopeLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -83,7 +84,10 @@ class PartLoad:
 
 @record
 class CouplingLoads:
-    """What a coupling exerts; multipliers: of its rows, (..., n_t) each."""
+    """What a coupling exerts; multipliers: of its rows, (..., n_t) each.
+
+    A rope that stretches has no row, and its load's value for a multiplier.
+    """
 
     coupling: Coupling
     rows: tuple[int, ...]
@@ -95,7 +99,7 @@ class CouplingLoads:
         """What its load is called: a moment, where it loads by couples alone; of a cam the force of contact."""
         if self.coupling.given.type == "cam":
             return "contact"
-        return "moment" if self.coupling.rows[0].is_couple else "force"
+        return "moment" if self.coupling.carriers[0].is_couple else "force"
 
     @property
     def carried(self) -> Array:
@@ -107,24 +111,28 @@ class CouplingLoads:
         return size * self.multipliers[0]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
-        """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
+        """What it would exert with other multipliers of all rows, (..., n_t, rows): by what stretches nothing."""
         own = tuple(multipliers[..., r] for r in self.rows)
+        if self.coupling.stretched is not None:
+            own = (np.zeros(multipliers.shape[:-1]),)
+        if not self.parts:
+            return CouplingLoads(self.coupling, self.rows, own, ())
         places = iter(self.parts)
         parts = tuple(
             next(places).of_multiplier(multiplier)
-            for row, multiplier in zip(self.coupling.rows, own, strict=True)
+            for row, multiplier in zip(self.coupling.carriers, own, strict=True)
             for _ in row.parts
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
 
     def parts_of_rows(self) -> Iterator[tuple[int, PartLoad]]:
         """The parts, each with the closure row that it belongs to."""
-        owners = (r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts)
-        return zip(owners, self.parts, strict=True)
+        owners = [r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts]
+        return zip(owners, self.parts, strict=self.coupling.stretched is None)
 
     def plus(self, more: Array | None) -> CouplingLoads:
         """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
-        if more is None:
+        if more is None or self.coupling.stretched is not None:
             return self
         whole = np.zeros_like(more)
         for r, multiplier in zip(self.rows, self.multipliers, strict=True):
@@ -151,23 +159,38 @@ def coupling_loads(
             continue
         rows = tuple(r for r, k in enumerate(layout.rows) if k == owner)
         multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
+        firsts = [int(layout.tables["closures"][r]["part"]) for r in rows]
+        if coupling.stretched is not None:
+            multipliers, firsts = _pull(layout, coupling.name, recovered)
         parts: list[PartLoad] = []
-        for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
-            parts += _part_loads(layout, r, row.parts, multiplier, recovered, states)
+        for first, row, multiplier in zip(firsts, coupling.carriers, multipliers, strict=False):
+            parts += _part_loads(first, row.parts, multiplier, recovered, states)
         found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
     return found
 
 
+def _pull(layout: Layout, name: str, recovered: Answers) -> tuple[tuple[Array], list[int]]:
+    """The value of a rope that stretches, and where its parts begin; none in a blow, in which it does not stretch."""
+    k, values = row_of_rope(layout, name), recovered.loads["value"]
+    if k < 0 or values.shape[-1] <= k:
+        return (np.zeros(values.shape[:-1]),), []
+    return (values[..., k],), [int(layout.tables["loads"][k]["part"])]
+
+
+def row_of_rope(layout: Layout, name: str) -> int:
+    """Which of the kernel's loads is that of a rope that stretches; -1: it is left out of the scene."""
+    named = ((load.name, rows.start) for load, rows in layout.mechanism.load_rows() if isinstance(load, RopeLoad))
+    return dict(named).get(name, -1)
+
+
 def _part_loads(
-    layout: Layout,
-    r: int,
+    first: int,
     parts: Sequence[CouplingPart],
     multiplier: Array,
     recovered: Answers,
     states: BodyStates,
 ) -> Iterator[PartLoad]:
-    """The loads of the parts of one row."""
-    first = int(layout.tables["closures"][r]["part"])
+    """The loads of the parts of one row, from the first of them on."""
     for k, part in enumerate(parts, first):
         f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
         if part.on_a is not None:

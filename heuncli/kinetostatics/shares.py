@@ -41,6 +41,7 @@ class Column:
     bodies: dict[str, Array]
     freedoms: dict[str, Array]
     rows: dict[str, Array]
+    loads: dict[str, Array]
     parts: dict[str, Array]
 
 
@@ -96,6 +97,7 @@ def shares_of(
     own = [action for action in applied if action.name in members]
     # what moves nothing, or falls freely, is felt by cuts all the same
     acting = {action.name for action in own if action.force.any() or action.moment.any()}
+    acting |= set(ropes_in(layout.mechanism))
     acting |= {GRAVITY} if layout.mechanism.gravity.any() else set()
     busy = not_zero(recovered.causes)
     live = {name: places for name, places in members.items() if name in acting or busy[list(places)].any()}
@@ -130,7 +132,12 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
     rows = {name: recovered.rows[name] for name in ("f", "m", "closed")} | {"multiplier": by_cause(columns.multipliers)}
     parts = {name: recovered.parts[name] for name in ("f", "m", "Q", "on_a", "on_b")}
-    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, parts)
+    value = recovered.loads["value"]
+    alone = np.zeros((len(members), *value.shape))
+    for c, own in enumerate(members.values()):
+        of_load = [k for k in own if k < value.shape[1]]
+        alone[c][:, of_load] = value[:, of_load]
+    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, {"value": alone}, parts)
 
 
 def joint_shares(shares: Shares, load: JointLoads) -> Block:
@@ -186,4 +193,11 @@ def from_outside(
         M = action.moment + cross_rows(action.to.position - about, action.force)
         inside = action.from_ is not None
         found[action.name] = (np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M)
+    for name in ropes_in(mechanism):
+        found[name] = np.zeros_like(states.centre[:, 0]), np.zeros_like(states.centre[:, 0])
     return found
+
+
+def ropes_in(mechanism: Mechanism) -> list[str]:
+    """The ropes that stretch, each a cause of its own."""
+    return [own.name for own in mechanism.couplings if own.stretched is not None]

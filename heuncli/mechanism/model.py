@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
@@ -196,7 +196,41 @@ class BushingLoad:
         return (self.a, self.p), (self.b, self.q)
 
 
-Load = PointLoad | PairLoad | JointLoad | BushingLoad
+@record
+class RopeLoad:
+    """A rope that stretches: value [N], with the sign of a closure's multiplier, times the unit loads of its parts.
+
+    It has the name of its coupling. stiffness [N/m] is that at the length [m] without load, which `law` tells in time
+    if it is given; only_pulls: it keeps no work where it is shorter.
+    """
+
+    name: str
+    parts: tuple[CouplingPart, ...]
+    value: Expression
+    stiffness: float
+    length: float
+    law: Expression | None
+    damping: float
+    only_pulls: bool
+    kind: str = "rope"
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time: the pull, then the length without load where that varies."""
+        return (self.value,) if self.law is None else (self.value, self.law)
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return self.damping == 0.0 and self.law is None
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return tuple(place for part in self.parts if not part.lies for place in part.places)
+
+
+Load = PointLoad | PairLoad | JointLoad | BushingLoad | RopeLoad
 
 
 class Law(NamedTuple):

@@ -11,12 +11,14 @@ from heuncli.spec.fields import (
     Angle,
     Anything,
     AsText,
+    Damping,
     Direction,
     Force,
     Length,
     LengthInTime,
     Lift,
     Number,
+    Stiffness,
     Switch,
 )
 
@@ -108,6 +110,8 @@ class RopeEntry(Entry):
     length: LengthInTime | None = None
     tension_only: Switch = False
     restitution: Number | None = None
+    stiffness: Stiffness | None = None
+    damping: Damping | None = None
 
 
 class ConstantVelocityEntry(Entry):

@@ -11,7 +11,16 @@ from heuncli import tolerances
 from heuncli.expressions.programs import LOADS, Expression, Pack, Variable
 from heuncli.joint_kinds import JOINTS
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, Mechanism, NamedPoint, PairLoad, PointLoad
+from heuncli.mechanism.model import (
+    GROUND,
+    BushingLoad,
+    JointLoad,
+    Mechanism,
+    NamedPoint,
+    PairLoad,
+    PointLoad,
+    RopeLoad,
+)
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.shapes.rotations import perpendicular
@@ -110,6 +119,7 @@ class _LoadRows:
     def __init__(self, mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> None:
         self.mechanism, self.frame = mechanism, frame
         self.made: list[LoadRow] = []
+        self.parts = sum(len(row.parts) for coupling in mechanism.couplings for row in coupling.rows)  # before a rope's
         for load, own in zip(mechanism.loads, programs, strict=True):
             x, y, z = (own + (NO_PROGRAM,) * (3 - len(own)))[:3]
             values = x, y, z
@@ -119,6 +129,8 @@ class _LoadRows:
                 self._pair_load(load, values)
             elif isinstance(load, BushingLoad):
                 self._bushing(load, own)
+            elif isinstance(load, RopeLoad):
+                self._rope(load, values)
             else:
                 self._joint_load(load, values)
 
@@ -166,6 +178,14 @@ class _LoadRows:
                     resistances=elastic.damping,
                 )
             )
+
+    def _rope(self, load: RopeLoad, values: Components) -> None:
+        """A rope that stretches, along its parts."""
+        size = {"stiffness": load.stiffness, "length": load.length, "coefficient": load.damping}
+        parts = {"part": self.parts, "part_count": len(load.parts)}
+        in_body = int(load.only_pulls)
+        self.made.append(LoadRow(kernel.ROPE, GROUND, GROUND, *values, ZERO, in_body=in_body, **size, **parts))
+        self.parts += len(load.parts)
 
     def _joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]

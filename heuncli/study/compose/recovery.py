@@ -207,7 +207,7 @@ class Recovery:
     @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
-        return energy(self.setup.scene.layout, self.recovered, self.states, self.loads)
+        return energy(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
     def magnitudes(self) -> Magnitudes:

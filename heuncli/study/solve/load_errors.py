@@ -112,7 +112,7 @@ class LoadErrors:
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
         if "energy" in self.compared:
-            self.add_energy(several, states, loads)
+            self.add_energy(several, states)
         if "motion" in self.compared:
             self.add_motion(states)
 
@@ -248,9 +248,9 @@ class LoadErrors:
                 turn = turned * lengths(both[0::count])
                 self.take(("sections", quantity), both, rounding, of, turn)
 
-    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_energy(self, several: Recovered, states: BodyStates) -> None:
         """Kinetic and potential energy, and work."""
-        block = energy(self.setup.scene.layout, several, states, loads)
+        block = energy(self.setup.scene.layout, several, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
