@@ -14,7 +14,6 @@ from heuncli.kinetostatics.actions import Action, ActionEnd
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import Answers
 from heuncli.mechanism.couplings import Coupling, CouplingPart
-from heuncli.mechanism.model import RopeLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
@@ -171,16 +170,10 @@ def coupling_loads(
 
 def _pull(layout: Layout, name: str, recovered: Answers) -> tuple[tuple[Array], list[int]]:
     """The value of a rope that stretches, and where its parts begin; none in a blow, in which it does not stretch."""
-    k, values = row_of_rope(layout, name), recovered.loads["value"]
+    k, values = layout.mechanism.row_of_rope(name), recovered.loads["value"]
     if k < 0 or values.shape[-1] <= k:
         return (np.zeros(values.shape[:-1]),), []
     return (values[..., k],), [int(layout.tables["loads"][k]["part"])]
-
-
-def row_of_rope(layout: Layout, name: str) -> int:
-    """Which of the kernel's loads is that of a rope that stretches; -1: it is left out of the scene."""
-    named = ((load.name, rows.start) for load, rows in layout.mechanism.load_rows() if isinstance(load, RopeLoad))
-    return dict(named).get(name, -1)
 
 
 def _part_loads(
@@ -198,6 +191,11 @@ def _part_loads(
         pushed = states.direction(part.c, np.asarray(part.apart)) if np.any(part.apart) else None
         m_a = m + cross_rows(Q - on_a, f)
         yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)
+
+
+def rope_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
+    """What ropes that stretch exert: as loads do, each by a law of its own."""
+    return coupling_actions([own for own in couplings if own.coupling.stretched is not None])
 
 
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:

@@ -59,6 +59,11 @@ class Shares:
     couplings: list[CouplingLoads]
     applied: list[Action]
 
+    @property
+    def held(self) -> list[CouplingLoads]:
+        """The couplings that hold something: ropes that stretch are among what is applied."""
+        return [own for own in self.couplings if own.coupling.stretched is None]
+
     def place(self, cause: str) -> int:
         """Of a cause, on the axis of causes."""
         return self.causes.index(cause)
@@ -97,7 +102,6 @@ def shares_of(
     own = [action for action in applied if action.name in members]
     # what moves nothing, or falls freely, is felt by cuts all the same
     acting = {action.name for action in own if action.force.any() or action.moment.any()}
-    acting |= set(ropes_in(layout.mechanism))
     acting |= {GRAVITY} if layout.mechanism.gravity.any() else set()
     busy = not_zero(recovered.causes)
     live = {name: places for name, places in members.items() if name in acting or busy[list(places)].any()}
@@ -159,7 +163,7 @@ def foundation_shares(
     parts: dict[tuple[str, ...], Block] = {}
     inner = [action for action in shares.applied if action.from_ is not None]
     standing = [*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]
-    for keys, on in on_ground([*standing, *coupling_actions(shares.couplings)]).items():
+    for keys, on in on_ground([*standing, *coupling_actions(shares.held)]).items():
         force, moment = force + on.force, moment + cross_rows(on.about - about, on.force) + on.moment
         parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:
@@ -193,11 +197,4 @@ def from_outside(
         M = action.moment + cross_rows(action.to.position - about, action.force)
         inside = action.from_ is not None
         found[action.name] = (np.zeros_like(M), np.zeros_like(M)) if inside else (action.force, M)
-    for name in ropes_in(mechanism):
-        found[name] = np.zeros_like(states.centre[:, 0]), np.zeros_like(states.centre[:, 0])
     return found
-
-
-def ropes_in(mechanism: Mechanism) -> list[str]:
-    """The ropes that stretch, each a cause of its own."""
-    return [own.name for own in mechanism.couplings if own.stretched is not None]

@@ -233,6 +233,11 @@ class RopeLoad:
 Load = PointLoad | PairLoad | JointLoad | BushingLoad | RopeLoad
 
 
+def path_of_load(load: Load) -> str:
+    """Where a load stands in the spec, or in the results."""
+    return f"{'couplings' if isinstance(load, RopeLoad) else 'forces'}.{load.name}"
+
+
 class Law(NamedTuple):
     """What prescribes a coordinate or a length in time.
 
@@ -316,6 +321,10 @@ class Mechanism:
                 count = 2
             yield load, slice(at, at + count)
             at += count
+
+    def row_of_rope(self, name: str) -> int:
+        """Which row of that table is a rope's that stretches; -1: none, for loads are left out of the scene."""
+        return next((own.start for x, own in self.load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
 
     @property
     def rubbing(self) -> tuple[JointLoad, ...]:

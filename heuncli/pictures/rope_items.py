@@ -22,7 +22,7 @@ def ropes(stood: Stood, k: int, *, thin: bool = False) -> Iterator[Strokes]:
     for rope in stood.ropes:
         for line in lines_of(stood, rope, k):
             yield seen(stood, line, THIN if thin else ARM)
-        for part in (part for row in rope.rows for part in row.parts if part.lies and not thin):
+        for part in (part for row in rope.carriers for part in row.parts if part.lies and not thin):
             yield seen(stood, rim(stood, part, k), THIN)
 
 
@@ -30,7 +30,7 @@ def lines_of(stood: Stood, rope: Coupling, k: int) -> Iterator[Array]:
     """A rope's strands and what lies on its sheaves, (n, 3) each."""
     ways: list[Array] = []
     about: dict[int, CouplingPart] = {}  # the sheave behind a strand
-    for row in rope.rows:
+    for row in rope.carriers:
         own = [strand(stood, part, k) for part in row.parts if not part.lies]
         arcs = {len(ways) + part.strand: part for part in row.parts if part.kind == "arc"}
         about |= arcs | {len(ways) + len(own) - 1: part for part in row.parts if part.kind == "wound" and part.strand}

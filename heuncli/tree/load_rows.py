@@ -181,10 +181,21 @@ class _LoadRows:
 
     def _rope(self, load: RopeLoad, values: Components) -> None:
         """A rope that stretches, along its parts."""
-        size = {"stiffness": load.stiffness, "length": load.length, "coefficient": load.damping}
-        parts = {"part": self.parts, "part_count": len(load.parts)}
-        in_body = int(load.only_pulls)
-        self.made.append(LoadRow(kernel.ROPE, GROUND, GROUND, *values, ZERO, in_body=in_body, **size, **parts))
+        self.made.append(
+            LoadRow(
+                kernel.ROPE,
+                GROUND,
+                GROUND,
+                *values,
+                ZERO,
+                in_body=int(load.only_pulls),
+                stiffness=load.stiffness,
+                length=load.length,
+                coefficient=load.damping,
+                part=self.parts,
+                part_count=len(load.parts),
+            )
+        )
         self.parts += len(load.parts)
 
     def _joint_load(self, load: JointLoad, values: Components) -> None:

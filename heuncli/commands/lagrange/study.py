@@ -27,7 +27,7 @@ from heuncli.joint_kinds import is_length
 from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
-from heuncli.kinetostatics.couplings import coupling_actions
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -75,11 +75,13 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     here = body_states(layout, at.here)
     # as they act with the drives: friction hangs on what the joint carries then
     applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
+    applied += rope_actions(coupling_loads(layout, at.there, states))
     k = forces_by_cause(layout, partials, applied)
+    held = [own for own in at.recovery.couplings if own.coupling.stretched is None]
     scale = size_of_terms(
         layout,
         partials,
-        [*applied, *whole_joint_actions(at.recovery.unsplit), *coupling_actions(at.recovery.couplings)],
+        [*applied, *whole_joint_actions(at.recovery.unsplit), *coupling_actions(held)],
         states,
     )
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)

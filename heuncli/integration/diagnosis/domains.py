@@ -13,7 +13,7 @@ from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import BushingLoad, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import BushingLoad, Load, Mechanism, PairLoad, RopeLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.tree.layout import Layout
@@ -47,7 +47,7 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
 def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     """What a load acts between, as its own law may name it; of rates of rates nothing is known."""
     name = f"{LOADS}.{load.name}"
-    if isinstance(load, PairLoad):
+    if isinstance(load, PairLoad | RopeLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
     if not isinstance(load, BushingLoad):

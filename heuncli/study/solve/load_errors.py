@@ -21,7 +21,7 @@ from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import total
 from heuncli.kinetostatics.joint_axes import in_axes
@@ -141,7 +141,8 @@ class LoadErrors:
         if self.by_cause:
             from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
 
-            for kind, name, values, more in compared_shares(self.setup, several, states, applied, self.compared, terms):
+            pushing = [*applied, *rope_actions(couplings)]
+            for kind, name, values, more in compared_shares(self.setup, several, states, pushing, self.compared, terms):
                 F, M = (rounding * more for rounding in terms.rounding)
                 rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
                 self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
