@@ -26,7 +26,7 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
     from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
-    from heuncli.kernel.values import RopeBounds, RopeMotion
+    from heuncli.kernel.values import LengthBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966
 
@@ -60,57 +60,55 @@ def range_of_load(
     """The range of such a variable; or of its rate, and of the rate of that, beside its value."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
-    V: cython.double = speed_of(points, load.a, load.p) + speed_of(points, load.b, load.q)
-    A: cython.double = acceleration_of(points, load.a, load.p) + acceleration_of(points, load.b, load.q)
-    far: cython.double = reach_of(points, load.a, load.p) + reach_of(points, load.b, load.q)
-    open_by: cython.double = scene.limits.rounding * far
-    fastest: cython.double = V
-    bend: cython.double = 0.5 * V * T
+    of: LengthBounds = bounds_of_load(scene, points, load, i, T)
     second: Bounds = anything()
-    if load.kind == ROPE:
-        rope: RopeBounds = bounds_of_rope(scene, points, load, T)
-        V = rope.rate
-        fastest = V
-        bend = 0.5 * V * T
-        open_by = scene.limits.rounding * rope.far
-        if rope.second < INFINITY:
-            bend = 0.125 * rope.second * T * T
-            second = Bounds(-rope.second, rope.second)
-    elif load.a == load.b:
-        fastest = 0.0
-        bend = 0.0
-        second = Bounds(0.0, 0.0)
-    elif variable.part == ALONG_LINE:
-        least: cython.double = points.first_place[i]
-        if points.last_place[i] < least:
-            least = points.last_place[i]
-        least = least - 0.5 * V * T - open_by
-        if least > 0.0:
-            A = A + V * V / least
-            bend = 0.125 * A * T * T
-            second = Bounds(-A, A)
-    elif load.kind == BUSHING_SHIFT:
-        L: cython.double = points.last_rate[i] + V * T
-        spin: cython.double = spin_of(points, load.a)
-        A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
-        fastest = V + spin * L
-        bend = 0.125 * A * T * T
-        second = Bounds(-A, A)
-    else:
-        fastest = QUARTER_TURN * (spin_of(points, load.a) + spin_of(points, load.b))
-        bend = 0.5 * fastest * T
-        open_by = 8.0 * scene.limits.rounding
-    rate: Bounds = Bounds(-fastest, fastest)
+    if of.second < INFINITY:
+        second = Bounds(-of.second, of.second)
+    rate: Bounds = Bounds(-of.rate, of.rate)
     if rates and variable.is_rate:
         return Span(value, second, anything())
     if rates:
         return Span(value, rate, second)
     if variable.is_rate:
-        if second.high < INFINITY:
-            open_by = scene.limits.rounding * V
-            rate = between(points.first_rate[i], points.last_rate[i], 0.5 * second.high * T + open_by)
+        if of.second < INFINITY:
+            rate = between(points.first_rate[i], points.last_rate[i], 0.5 * of.second * T + of.rounding * of.rate)
         return Span(rate, anything(), anything())
-    return Span(between(points.first_place[i], points.last_place[i], bend + open_by), anything(), anything())
+    beyond: cython.double = of.bend + of.rounding * of.far
+    return Span(between(points.first_place[i], points.last_place[i], beyond), anything(), anything())
+
+
+def bounds_of_load(
+    scene: cython.pointer[Scene],
+    points: cython.pointer[Orbits],
+    load: cython.pointer[Load],
+    i: cython.Py_ssize_t,
+    T: cython.double,
+) -> LengthBounds:
+    """What the motions allow of a variable that is of a load; where two points of one body are, nothing."""
+    rounding: cython.double = scene.limits.rounding
+    if load.kind == ROPE:
+        return bounds_of_rope(scene, points, load, T)
+    far: cython.double = reach_of(points, load.a, load.p) + reach_of(points, load.b, load.q)
+    if load.a == load.b:
+        return LengthBounds(0.0, 0.0, 0.0, far, rounding)
+    V: cython.double = speed_of(points, load.a, load.p) + speed_of(points, load.b, load.q)
+    A: cython.double = acceleration_of(points, load.a, load.p) + acceleration_of(points, load.b, load.q)
+    if scene.variables[i].part == ALONG_LINE:
+        least: cython.double = points.first_place[i]
+        if points.last_place[i] < least:
+            least = points.last_place[i]
+        least = least - 0.5 * V * T - rounding * far
+        if least > 0.0:
+            A = A + V * V / least
+            return LengthBounds(V, A, 0.125 * A * T * T, far, rounding)
+        return LengthBounds(V, INFINITY, 0.5 * V * T, far, rounding)
+    if load.kind == BUSHING_SHIFT:
+        L: cython.double = points.last_rate[i] + V * T
+        spin: cython.double = spin_of(points, load.a)
+        A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
+        return LengthBounds(V + spin * L, INFINITY, 0.125 * A * T * T, far, rounding)
+    turning: cython.double = QUARTER_TURN * (spin_of(points, load.a) + spin_of(points, load.b))
+    return LengthBounds(turning, INFINITY, 0.5 * turning * T, 8.0, rounding)
 
 
 def between(a: cython.double, b: cython.double, beyond: cython.double) -> Bounds:

@@ -24,32 +24,34 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, dot, norm, sub
     from heuncli.kernel.libm import INFINITY
     from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
+    from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import ROD, STRAND, Closure, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.values import RopeBounds
+    from heuncli.kernel.values import LengthBounds
 
 
 def bounds_of_rope(
     scene: cython.pointer[Scene], points: cython.pointer[Orbits], load: cython.pointer[Load], T: cython.double
-) -> RopeBounds:
+) -> LengthBounds:
     """Of all its parts together, as they lie at the end of the stretch."""
     i: cython.Py_ssize_t
-    found: RopeBounds = RopeBounds(0.0, 0.0, 0.0)
+    rate: cython.double = 0.0
+    second: cython.double = 0.0
+    far: cython.double = 0.0
     for i in range(load.part, load.part + load.part_count):
         part: cython.pointer[Closure] = cython.address(scene.parts[i])
-        if part.kind != ROD and part.kind != STRAND:
-            continue
-        own: RopeBounds = bounds_of_strand(points, part, T)
-        times: cython.double = fabs(part.factor)
-        found = RopeBounds(
-            found.rate + times * own.rate, found.second + times * own.second, found.far + times * own.far
-        )
-    return found
+        if part.kind == ROD or part.kind == STRAND:
+            own: Jet = bounds_of_strand(points, part, T)
+            rate += fabs(part.factor) * own.rate
+            second += fabs(part.factor) * own.second
+            far += fabs(part.factor) * own.value
+    bend: cython.double = 0.125 * second * T * T if second < INFINITY else 0.5 * rate * T
+    return LengthBounds(rate, second, bend, far, scene.limits.rounding)
 
 
-def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> RopeBounds:
-    """Of one strand; that between two points turns with neither of them."""
+def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
+    """Of one strand: how far it may be from the origin, and its rates; between two points it turns with neither."""
     turns: cython.double = 1.0 if part.kind == STRAND else 0.0
     sigma: cython.double = turns * fabs(part.g.x - part.g.y)
     radius: cython.double = turns * fabs(part.g.y)
@@ -65,7 +67,7 @@ def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closur
     far: cython.double = reach_of(points, part.a, part.p) + reach_of(points, part.b, part.q) + sigma + radius
     free: cython.double = nearest * nearest - sigma * sigma
     if not nearest > 0.0 or not free > 0.0:
-        return RopeBounds(INFINITY, INFINITY, far) if sigma > 0.0 else RopeBounds(V + radius * both, INFINITY, far)
+        return Jet(far, INFINITY if sigma > 0.0 else V + radius * both, INFINITY)
     l: cython.double = sqrt(free)
     G: cython.double = 1.0 + turns * 0.5 * slant * slant * sigma / (free * l)
     A: cython.double = acceleration_of(points, part.a, part.p) + acceleration_of(points, part.b, part.q)
@@ -73,4 +75,4 @@ def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closur
     A = G * (A + (twist + spin * spin) * span + 2.0 * spin * V)
     A += V * V / l + sigma * V * V * (2.0 + sigma / l) / free
     A += radius * (twist + turns * twist_of(points, part.b) + spin * both)
-    return RopeBounds(G * V + radius * both, A, far)
+    return Jet(far, G * V + radius * both, A)

@@ -101,12 +101,17 @@ class RopeMotion(Value):
     rate: float
 
 
-class RopeBounds(Value):
-    """How large rate and second derivative of a rope's length may be, and how far from the origin it may be."""
+class LengthBounds(Value):
+    """Over a stretch of time: of a length, or a strain, how large its rate and its second derivative may be.
+
+    bend: how far from the chord between its ends it may be; far: of what it is the difference; rounding: relative.
+    """
 
     rate: float
     second: float
+    bend: float
     far: float
+    rounding: float
 
 
 class VectorRate(Value):
