@@ -254,14 +254,16 @@ class _LoadRows:
 def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
     """The programs of loads and drives: what they do between the stages of a step must not be passed over.
 
-    Of conditions only where they change.
+    Of conditions only where they change, and of ropes that stretch where they go slack: else those are springs, which
+    the steps' own error follows.
     """
+    springy = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
     driven = {id(law.value): law.value for law in mechanism.laws}
     loads = {id(e): e for load in mechanism.loads for e in load.values}
     watched = [
-        WatchRow(programs.at[key], curved=int(key in driven), condition=0)
+        WatchRow(programs.at[key], curved=int(key in driven), condition=int(key in springy))
         for key, e in (loads | driven).items()
-        if e.constant is None
+        if e.constant is None and (e.held or key not in springy)
     ]
     conditions = (programs.at[id(condition.value)] for condition in mechanism.conditions)
     return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
