@@ -84,7 +84,13 @@ class Action:
             yield self.from_, -self.force, self.opposite_moment
 
     def on_ground(self) -> tuple[Array, Array, Array] | None:
-        """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere."""
+        """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere.
+
+        Of what acts between two places of the ground, as a strand of a rope, both together.
+        """
+        if self.from_ is not None and self.to.body == self.from_.body == GROUND:
+            lever = cross_rows(self.to.position - self.from_.position, self.force)
+            return np.zeros_like(self.force), self.moment + self.opposite_moment + lever, self.to.position
         if self.to.body == GROUND:
             return self.force, self.moment, self.to.position
         if self.from_ is not None and self.from_.body == GROUND:
