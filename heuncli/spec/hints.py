@@ -14,7 +14,6 @@ from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISS
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
 COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
-STRETCH = ("stiffness", "damping")
 
 
 def called(key: str, known: Collection[str]) -> str | None:
@@ -54,11 +53,6 @@ def belonging(key: str, known: Collection[str]) -> str | None:
             return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
     if key in COORDINATES and "initial" in known:
         return f"the start of a coordinate is initial: {{{key}: ...}}"
-    if "through" in known and (key in STRETCH or called(key, STRETCH)):
-        return (
-            "a rope keeps its length; what stretches is a spring: between two points in its place, "
-            "or behind one of its ends (heun explain howto, Pulley)"
-        )
     if key == "initial" and "length" in known:
         return "a rod starts as it is assembled, or with its length: ..."
     if key == "initial" and {"from", "to"} <= set(known):
