@@ -195,6 +195,8 @@ ROWS: tuple[Quantity, ...] = (
         scalar("normal", "N")),
     *at("couplings.COUPLING", "of gears, the parts of the tooth force beside the tangential one",
         scalar("radial", "N"), scalar("axial", "N")),
+    *at("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
+        "none comes out", scalar("efficiency", "1")),
     *at("couplings.COUPLING", "of a screw, about its axis; of a constant-velocity joint ON `to`, about either shaft",
         scalar("torque", "N·m")),
     *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",

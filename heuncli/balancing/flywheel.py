@@ -22,7 +22,16 @@ from heuncli.balancing.load_torque import torques
 from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import BushingLoad, JointLoad, Load, Mechanism, PairLoad, RopeLoad, path_of_load
+from heuncli.mechanism.model import (
+    BushingLoad,
+    JointLoad,
+    Load,
+    Mechanism,
+    PairLoad,
+    RopeLoad,
+    ThreadLoad,
+    path_of_load,
+)
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -165,6 +174,8 @@ def unplaced(load: Load) -> Iterator[str]:
     """Why the work of a load is not told by where things are; nothing where it is."""
     if isinstance(load, JointLoad) and load.kind in ("damper", "friction"):
         yield "hangs on the rate of its joint"
+    if isinstance(load, ThreadLoad):
+        yield "hangs on the way that its thread turns"
     if isinstance(load, JointLoad) and load.kind == "turn_spring" and load.turning:
         yield "has damping"
     if isinstance(load, PairLoad | RopeLoad) and load.damping:

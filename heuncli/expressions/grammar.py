@@ -239,6 +239,8 @@ class _Parser:
             hint = self.decimal(self.at)
         if hint is None and self.token == "if":
             hint = "a value by cases is: a if c else b"
+        if hint is None and self.token == "[":
+            hint = "points stand in a table: tables: {NAME: {x: [0, 1], y: [5, 7]}}, and here table(NAME, x)"
         if hint is None and self.token == "." and self.at and self.tokens[self.at - 1][1] == ")":
             hint = "only a joint has coordinates: shaft.angle, guide.travel"
         plain = "an expression is of numbers, names, + - * / ** and ( )"

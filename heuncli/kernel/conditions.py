@@ -51,7 +51,7 @@ def condition(
 
 def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
     """Unit load, gap, rate and gamma of a condition of two bodies."""
-    if scene.flat and row.kind <= TURN and row.e.z == 0.0 and row.g.z == 0.0:  # nothing along z, nor a turn about it
+    if scene.flat and is_in_plane(row):
         measure_in_plane(scene, row)
         return
     row.Q = place_of(scene, row.b, row.q)
@@ -75,6 +75,13 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         wound_part(scene, row)
     else:
         rolling_row(scene, row)
+
+
+def is_in_plane(row: cython.pointer[Closure]) -> cython.bint:
+    """Whether it is one of those that a flat scene has formulae for: of directions the others look along z."""
+    if row.kind <= DOT:
+        return row.e.z == 0.0 and row.g.z == 0.0
+    return row.kind == ROD or row.kind == TURN or row.kind == MESH
 
 
 def enter(scene: cython.pointer[Scene], part: cython.pointer[Closure]) -> cython.void:

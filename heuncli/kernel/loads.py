@@ -28,6 +28,7 @@ if not cython.compiled:
         SHIFT_DAMPER,
         SHIFT_FRICTION,
         SPRING,
+        THREAD_FRICTION,
         THRUST,
         TURN_FRICTION,
         TURN_SPRING,
@@ -131,8 +132,9 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     """A torque, thrust or spring about or along the joint's axis, a damper or friction against its turning or sliding.
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
-    against the direction of the motion. Gives the power of what has no potential, less that of friction by what
-    presses: that is found here as it is if 1 N does, and put on no body (pressing.py).
+    against the direction of the motion; in a thread the force that goes with its moment is added. Gives the power of
+    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on no
+    body (pressing.py).
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
@@ -164,6 +166,9 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
         load.force = acts
     else:
         load.moment = acts
+    if load.kind == THREAD_FRICTION:
+        load.force = scaled(load.factor, acts)
+        load.power += dot(load.force, sliding_in(scene, load, v))
     load.from_at = load.at
     if load.presses:  # by a unit of it; what presses is found with the accelerations
         load.unit = acts

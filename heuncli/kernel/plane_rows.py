@@ -16,7 +16,7 @@ if not cython.compiled:
     from math import sqrt
 
     from heuncli.kernel.algebra import Vec3
-    from heuncli.kernel.scene import DOT, GUIDE, Body, Closure, Freedom, Scene
+    from heuncli.kernel.scene import DOT, GUIDE, MESH, SUM, TURN, Body, Closure, Freedom, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.values import CarriedInPlane
 
@@ -58,6 +58,10 @@ def measure_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure])
         guide_in_plane(scene, row)
     elif row.kind == DOT:
         dot_in_plane(scene, row)
+    elif row.kind == TURN:
+        angle_in_plane(scene, row)
+    elif row.kind == MESH:
+        mesh_in_plane(scene, row)
     else:
         rod_in_plane(scene, row)
 
@@ -116,6 +120,41 @@ def rod_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> 
         row.gamma += (vx * vx + vy * vy - row.rate * row.rate) / span
 
 
+def angle_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """A pin's angle = length, about z: gamma = 0."""
+    row.f = Vec3(0.0, 0.0, 0.0)
+    row.m = row.e
+    row.gap = scene.freedoms[row.freedom].q - row.length
+    row.rate = row.e.z * (turn_rate(scene, row.b) - turn_rate(scene, row.a))
+    row.gamma = 0.0
+
+
+def turn_rate(scene: cython.pointer[Scene], body: cython.int) -> cython.double:
+    """Angular velocity of a body about z; the ground has none."""
+    return scene.bodies[body].omega.z if body >= 0 else 0.0
+
+
+def mesh_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
+    """A load fixed in the carrier c: gamma as in meshing.py; its couple, about z, turns with nothing.
+
+    gamma = f . (w_b - w_a) + (omega_c x f) . (v_b - v_a),  w = cen + omega x (v_c - v)
+    """
+    f: Vec3 = turned_in_plane(scene, row.c, row.e)
+    row.Q = place_in_plane(scene, row.c, row.p)
+    c: CarriedInPlane = carried_in_plane(scene, row.c, row.Q)
+    b: CarriedInPlane = carried_in_plane(scene, row.b, row.Q)
+    a: CarriedInPlane = carried_in_plane(scene, row.a, row.Q)
+    x: cython.double = b.vx - a.vx
+    y: cython.double = b.vy - a.vy
+    wx: cython.double = b.cx - a.cx - b.omega * (c.vy - b.vy) + a.omega * (c.vy - a.vy)
+    wy: cython.double = b.cy - a.cy + b.omega * (c.vx - b.vx) - a.omega * (c.vx - a.vx)
+    row.f = f
+    row.m = turned_in_plane(scene, row.c, row.g)
+    row.gap = row.ratio * scene.freedoms[row.freedom].q + row.ratio_b * scene.freedoms[row.freedom_b].q - row.length
+    row.rate = f.x * x + f.y * y + row.m.z * (b.omega - a.omega)
+    row.gamma = f.x * wx + f.y * wy + c.omega * (f.x * y - f.y * x)
+
+
 def demanded_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.double:
     """J Vdot of a row if no freedom accelerated."""
     x: cython.double = 0.0
@@ -160,8 +199,14 @@ def spread_in_plane(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         body: cython.pointer[Body] = cython.address(scene.bodies[scene.indices[n]])
         body.M_branch = Vec3(0.0, 0.0, 0.0)
         body.f_branch = Vec3(0.0, 0.0, 0.0)
-    unit_load_in_plane(scene, row, row.b, -1.0)
-    unit_load_in_plane(scene, row, row.a, 1.0)
+    if row.kind == SUM:
+        for n in range(row.part, row.part + row.part_count):
+            part: cython.pointer[Closure] = cython.address(scene.parts[n])
+            unit_load_in_plane(scene, part, part.b, -part.factor)
+            unit_load_in_plane(scene, part, part.a, part.factor)
+    else:
+        unit_load_in_plane(scene, row, row.b, -1.0)
+        unit_load_in_plane(scene, row, row.a, 1.0)
     for n in range(row.path, row.path + row.path_count):
         climb_in_plane(scene, cython.address(scene.bodies[scene.indices[n]]))
 

@@ -3,8 +3,8 @@
     E = E_0 + sum over k of A_k N_k          what presses in a joint, two vectors: linear in what it carries
     N_j = |E1_j| + |E2_j|                    how hard; friction is -c_j tanh(v_j / v0_j) N_j against the motion
 of a pin E1 is the joint's force and E2 nothing, of a guide what of the force is across it, of one that tilts what its
-two ends carry, E1,2 = F / 2 -+ (n x M) / length. E_0 answers all loads without this friction, A_k what rubs in the k-th
-joint if N_k = 1: all by the factors that stand.
+two ends carry, E1,2 = F / 2 -+ (n x M) / length; of a thread E1 is the multiplier of its row alone. E_0 answers all
+loads without this friction, A_k what rubs in the k-th joint if N_k = 1: all by the factors that stand.
 
 B_jk = |A1_jk| + |A2_jk| bounds what a unit of N_k adds to N_j. Where 1 - B is an M-matrix (elimination leaves positive
 pivots) there is one answer and no other, whatever E_0 is: in the weights w = (1 - B)^-1 1, N -> |E(N)| is a contraction
@@ -31,6 +31,8 @@ if not cython.compiled:
         FOUND,
         JAMS,
         SHIFT_FRICTION,
+        THREAD_FRICTION,
+        THRUST_OF_ROW,
         TWO,
         UNPROVED,
         WHOLE,
@@ -90,7 +92,7 @@ def rub(scene: cython.pointer[Scene], load: cython.pointer[Load], N: cython.doub
         load.force = acts
         load.moment = zero
     else:
-        load.force = zero
+        load.force = scaled(load.factor, acts) if load.kind == THREAD_FRICTION else zero
         load.moment = acts
     push(scene, load.b, load.at, load.force, load.moment)
     push(scene, load.a, load.at, scaled(-1.0, load.force), scaled(-1.0, load.moment))
@@ -119,12 +121,20 @@ def carried_moment(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> 
     return total
 
 
+def thrust(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+    """What the flanks of a thread press with along its axis, a single number, in the answer found."""
+    return Vec3(scene.closures[load.row].multiplier, 0.0, 0.0)
+
+
 def see_pressing(scene: cython.pointer[Scene], column: cython.Py_ssize_t) -> cython.void:
     """Put down E of all joints in the answer found, in a column: 0 of all other loads, k + 1 of the k-th friction."""
     j: cython.Py_ssize_t
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for j in range(scene.rub_count):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[j]])
+        if load.presses == THRUST_OF_ROW:
+            put_parts(scene, column, j, thrust(scene, load), zero)
+            continue
         F: Vec3 = carried_force(scene, load)
         if load.presses == WHOLE:
             put_parts(scene, column, j, F, zero)

@@ -16,15 +16,18 @@ from heuncli.kernel.structs import Pointer, Record, Struct
 # Kinds of freedoms, loads and closure rows.
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
-TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION = range(7, 11)
-BUSHING_SHIFT, BUSHING_TURN, ROPE = range(11, 14)
+TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
+BUSHING_SHIFT, BUSHING_TURN, ROPE = range(12, 15)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
 ALONG_LINE = 3  # of a load: its length; before that the components of its strain
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
-GIVEN, WHOLE, ACROSS, ENDS = range(4)  # what presses where a load rubs: nothing found, the joint's force or parts of it
+GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
+    5
+)  # what presses where a load rubs: nothing found, the joint's force or
+# parts of it, the multiplier of a coupling's row
 FOUND, JAMS, TWO, UNPROVED = range(4)  # of the answers to friction by what presses: one, none, two, perhaps not one
 
 
@@ -126,13 +129,14 @@ class Load(Record):
     coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
-    factor: float  # of a force or couple: by which the vector is to be multiplied
+    factor: float  # of a force or couple: by which the vector is to be multiplied; of a thread's friction its force by
+    # its moment [1/m]
     offset: float
     across: Vec3  # of a joint that was cut: a direction across the axis, in a
     mark: Vec3  # and the one in b that agrees with it at angle 0
     presses: int  # of friction: GIVEN, or what of the joint's own load presses; the coefficient is then by that
     held_by: int  # the body whose joint it is; -1: the joint was cut
-    row: int  # of a joint that was cut: its first closure row
+    row: int  # of a joint that was cut: its first closure row; of a thread its own
     row_count: int
     reach: float  # of ENDS: the distance between the two ends [m]
     frame: Mat3  # of a bushing: its axes, in a
@@ -151,7 +155,7 @@ class Load(Record):
     strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
-    unit: Vec3  # of friction by what presses: force or moment on b where that is 1
+    unit: Vec3  # of friction by what presses: force or moment on b where that is 1; of a thread the moment
     pressed: float  # what presses [N]; of GIVEN friction its size [N], [N m]
 
 

@@ -28,6 +28,7 @@ if not cython.compiled:
         SHIFT_DAMPER,
         SHIFT_FRICTION,
         SPRING,
+        THREAD_FRICTION,
         THRUST,
         TURN_FRICTION,
         TURN_SPRING,
@@ -179,6 +180,10 @@ def joint_along(
         acts = add_scaled(scaled(-against, change), -more, motion)
         power = -more * speed * speed - 2.0 * against * speed * faster
     d: LoadTangent = LoadTangent(there.x, acts, zero) if slides else LoadTangent(there.x, zero, acts)
+    if load.kind == THREAD_FRICTION:
+        d = LoadTangent(there.x, scaled(load.factor, acts), acts)
+        power += dot(d.force, sliding_in(scene, load, point_of(scene, load.b, load.q).v))
+        power += dot(load.force, sliding_along(scene, load, there))
     push_along(scene, load.b, load.at, load.force, d)
     push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
     return power

@@ -16,13 +16,25 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scaled, sub
     from heuncli.kernel.closures import push_closures
     from heuncli.kernel.directions import direction_of
-    from heuncli.kernel.pressing import carried_force, carried_moment, pressed_along, put_ends, put_parts
-    from heuncli.kernel.scene import ENDS, SHIFT_FRICTION, WHOLE, BodyAtState, BodyTangent, Closure, Load, Scene
+    from heuncli.kernel.loads import sliding_in
+    from heuncli.kernel.pressing import carried_force, carried_moment, pressed_along, put_ends, put_parts, thrust
+    from heuncli.kernel.scene import (
+        ENDS,
+        SHIFT_FRICTION,
+        THREAD_FRICTION,
+        THRUST_OF_ROW,
+        WHOLE,
+        BodyAtState,
+        BodyTangent,
+        Closure,
+        Load,
+        Scene,
+    )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_closures import row_along
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_motion import point_along, swung
-    from heuncli.kernel.tree import balance
+    from heuncli.kernel.tree import balance, point_of
     from heuncli.kernel.values import LoadTangent
 
 
@@ -52,6 +64,9 @@ def press_along(scene: cython.pointer[Scene]) -> cython.double:
         d: LoadTangent = LoadTangent(zero, zero, change)
         if load.kind == SHIFT_FRICTION:
             d = LoadTangent(zero, change, zero)
+        elif load.kind == THREAD_FRICTION:
+            d = LoadTangent(zero, scaled(load.factor, change), change)
+            power += dot(d.force, sliding_in(scene, load, point_of(scene, load.b, load.q).v))
         push_along(scene, load.b, load.at, zero, d)
         push_along(scene, load.a, load.at, zero, opposite(d))
     return power
@@ -64,6 +79,9 @@ def see_along(scene: cython.pointer[Scene]) -> cython.void:
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     for j in range(scene.rub_count):
         load: cython.pointer[Load] = cython.address(scene.loads[scene.rubs[j]])
+        if load.presses == THRUST_OF_ROW:
+            put_parts(scene, column, j, thrust(scene, load), zero)
+            continue
         change: Vec3 = force_along(scene, load)
         if load.presses == WHOLE:
             put_parts(scene, column, j, change, zero)

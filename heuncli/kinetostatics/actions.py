@@ -26,6 +26,7 @@ from heuncli.mechanism.model import (
     PointLoad,
     RopeLoad,
     Spread,
+    ThreadLoad,
 )
 from heuncli.records import record
 from heuncli.results import Array
@@ -174,6 +175,8 @@ def _ends(
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_from, load.p)
     if isinstance(load, BushingLoad):
         return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, load.p, apart=True)
+    if isinstance(load, ThreadLoad):
+        return ActionEnd(load.b, on_to, load.q), ActionEnd(load.a, on_to, None, apart=True)
     assert joint is not None
     return _joint_ends(joint, on_to)
 

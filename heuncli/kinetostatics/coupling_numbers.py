@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.mechanism.model import GROUND
 from heuncli.records import record
@@ -47,11 +48,11 @@ def components_of(loads: CouplingLoads) -> list[CoupledNumber]:
     return [number for number in numbers_of(loads) if number.factor != 0.0]
 
 
-def coupling_block(loads: CouplingLoads, names: Sequence[str]) -> dict[str, object]:
-    """A coupling's block of the results; names: of the bodies."""
+def coupling_block(loads: CouplingLoads, names: Sequence[str], beside: Sequence[Action] = ()) -> dict[str, object]:
+    """A coupling's block of the results; names: of the bodies, beside: what it exerts besides, as a pretension."""
     on = {
         "ground" if body == GROUND else names[body]: {"point": place, "force": force, "moment": moment}
-        for body, (place, force, moment) in loads.on_bodies().items()
+        for body, (place, force, moment) in loads.on_bodies(beside).items()
     }
     return {number.name: number.values for number in numbers_of(loads)} | {"on": on, "open": []}
 
@@ -104,6 +105,19 @@ def of_constant_velocity(loads: CouplingLoads) -> list[CoupledNumber]:
     return [CoupledNumber("torque", loads.multipliers[0] * np.sum(m * m, axis=-1), (0,), is_moment=True, linear=True)]
 
 
+def of_screw(loads: CouplingLoads) -> list[CoupledNumber]:
+    """Its thrust; with friction all of it, and the torque that this takes."""
+    if loads.friction is None:
+        return carried(loads)
+    from heuncli.kinetostatics.thread_friction import whole_load  # few scenes have it
+
+    force, torque = whole_load(loads)
+    return [
+        CoupledNumber("force", force, (0,), linear=True),
+        CoupledNumber("torque", torque, (0,), is_moment=True, linear=True),
+    ]
+
+
 NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
-    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity,
+    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity, "screw": of_screw,
 }  # fmt: skip

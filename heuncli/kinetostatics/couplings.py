@@ -7,6 +7,7 @@ the instants an axis of causes where they are told by cause.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 
@@ -17,6 +18,7 @@ from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.shapes.rotations import cross_rows
+from heuncli.spec.couplings import Screw
 from heuncli.tree.layout import Layout
 
 
@@ -86,12 +88,20 @@ class CouplingLoads:
     """What a coupling exerts; multipliers: of its rows, (..., n_t) each.
 
     A rope that stretches has no row, and its load's value for a multiplier.
+    friction: of a thread, by what its row carries. It stands among the applied loads, and is told here with the rest.
     """
 
     coupling: Coupling
     rows: tuple[int, ...]
     multipliers: tuple[Array, ...]
     parts: tuple[PartLoad, ...]
+    friction: Action | None = None
+
+    def rubbing(self, applied: Sequence[Action]) -> CouplingLoads:
+        """With its friction, which is among the applied loads by its name."""
+        if not isinstance(self.coupling.given, Screw) or self.coupling.given.friction is None:
+            return self
+        return replace(self, friction=next((own for own in applied if own.name == self.coupling.name), None))
 
     @property
     def carries(self) -> str:
@@ -138,13 +148,20 @@ class CouplingLoads:
             whole[..., r] = multiplier + more[..., r]
         return self.of_multipliers(whole)
 
-    def on_bodies(self) -> dict[int, tuple[Array, Array, Array]]:
-        """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place."""
+    def on_bodies(self, beside: Sequence[Action] = ()) -> dict[int, tuple[Array, Array, Array]]:
+        """Of each body that it loads, the ground among them: a place, the force ON it, the moment about the place.
+
+        beside: what it exerts besides, as the pretension of a belt.
+        """
         found: dict[int, tuple[Array, Array, Array]] = {}
-        for part in sorted(self.parts, key=lambda own: not own.part.lies):  # of sheaves their centres come first
-            for body, place, own, turning in part.on_both:
-                at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
-                found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
+        loading = (own for own in self.parts if not own.part.counts_alone)
+        parts = sorted(loading, key=lambda own: not own.part.lies)  # of sheaves their centres come first
+        rubs = () if self.friction is None else (self.friction,)
+        held = (on for part in parts for on in part.on_both)
+        given = ((end.body, end.position, F, M) for action in (*beside, *rubs) for end, F, M in action.on_bodies())
+        for body, place, own, turning in chain(held, given):
+            at, force, moment = found.get(body, (place, np.zeros_like(own), np.zeros_like(turning)))
+            found[body] = at, force + own, moment + turning + cross_rows(place - at, own)
         return found
 
 
@@ -204,5 +221,5 @@ def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
         Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
-        if not part.part.lies
+        if not (part.part.lies or part.part.counts_alone)
     ]

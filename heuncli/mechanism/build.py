@@ -81,11 +81,11 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
     couplings: tuple[Coupling, ...] = ()
     if spec.couplings:
-        from heuncli.mechanism.build_couplings import couplings_of, pretensions  # few scenes have them
+        from heuncli.mechanism.build_couplings import couplings_of, loads_beside  # few scenes have them
 
         number = {name: k for name, (k, _) in joints.items()}
         couplings = couplings_of(spec, made, bodies, number)
-        loads += pretensions(spec, made, bodies, number)
+        loads += loads_beside(spec, made, bodies, number)
     return Mechanism(
         title=spec.title,
         planar=planar,

@@ -12,9 +12,9 @@ from heuncli.joint_kinds import JOINTS
 from heuncli.mechanism.couplings import CamShape, Coordinate, CoupledRow, Coupling, CouplingPart
 from heuncli.mechanism.directions import unit
 from heuncli.mechanism.gearing import gear_row
-from heuncli.mechanism.model import GROUND, Body, Joint, PairLoad
+from heuncli.mechanism.model import GROUND, Body, Joint, Load
 from heuncli.mechanism.strands import belt_row, pretension_of
-from heuncli.mechanism.threads import screw_row
+from heuncli.mechanism.threads import friction_of, screw_row
 from heuncli.mechanism.wheels import WheelEnds, ball_rows, disc_rows
 from heuncli.records import record
 from heuncli.results import Array
@@ -41,16 +41,22 @@ def couplings_of(
     return tuple(found)
 
 
-def pretensions(
+def loads_beside(
     spec: Spec, joints: Sequence[Joint], bodies: Sequence[Body], number: Mapping[str, int]
-) -> tuple[PairLoad, ...]:
-    """What belts pull their pulleys together with, by the belts' names."""
+) -> tuple[Load, ...]:
+    """The loads that couplings have beside what they hold, by their names.
+
+    What belts pull their pulleys together with; what rubs in threads.
+    """
     drawn = CoupledDrawing(spec, joints, bodies, number)
-    belts = {name: own for name, own in spec.couplings.items() if own.type == "belt" and own.pretension > 0.0}
-    return tuple(
-        pretension_of(name, own, joints, bodies, (drawn.of(own.terms)[0], drawn.of(own.terms)[1]))
-        for name, own in belts.items()
-    )
+    found: list[Load] = []
+    for k, (name, own) in enumerate(spec.couplings.items()):
+        of = tuple(drawn.of(own.terms)) if isinstance(own, c.Belt | c.Screw) else ()
+        if isinstance(own, c.Belt) and own.pretension > 0.0:
+            found.append(pretension_of(name, own, joints, bodies, (of[0], of[1])))
+        elif isinstance(own, c.Screw) and own.friction is not None:
+            found.append(friction_of(name, k, own, own.friction, joints, bodies, (of[0], of[1])))
+    return tuple(found)
 
 
 @record

@@ -100,6 +100,11 @@ class CouplingPart:
         return self.kind in ("arc", "wound")
 
     @property
+    def counts_alone(self) -> bool:
+        """Whether it counts by coordinates for another part, and loads nothing."""
+        return self.kind == "mesh" and self.a == self.b
+
+    @property
     def places(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it looks at them, body axes."""
         if self.is_couple:

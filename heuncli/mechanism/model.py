@@ -2,7 +2,7 @@
 
 Vectors are (3,) float64. Bodies and joints are called by their numbers, in the order of the spec; body -1 is the
 ground. Values in time stay expressions (expressions/programs.py). Bodies, joints, drives, blows, stops and conditions
-have the classes of the spec (spec/models.py); its kinds of loads become four, by where they act.
+have the classes of the spec (spec/models.py); its kinds of loads become five, by where they act.
 """
 
 from __future__ import annotations
@@ -230,12 +230,47 @@ class RopeLoad:
         return tuple(place for part in self.parts if not part.lies for place in part.places)
 
 
-Load = PointLoad | PairLoad | JointLoad | BushingLoad | RopeLoad
+@record
+class ThreadLoad:
+    """What rubs in a thread between the bodies a and b, by what its flanks press with along its axis; ON b at q.
+
+    coupling: its number. q: a point of b on the axis, axis: in a, body axes [m]; coefficient [m]: of the torque by what
+    presses; factor [1/m]: of the force along the axis by that torque; speed: where tanh(rate/speed) bends.
+    """
+
+    name: str
+    coupling: int
+    a: int
+    b: int
+    q: Array
+    axis: Array
+    coefficient: float
+    factor: float
+    speed: float
+    kind: str = "thread friction"
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """None: it has no value in time."""
+        return ()
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return False
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return ((self.b, self.q),)
+
+
+Load = PointLoad | PairLoad | JointLoad | BushingLoad | ThreadLoad | RopeLoad
 
 
 def path_of_load(load: Load) -> str:
     """Where a load stands in the spec, or in the results."""
-    return f"{'couplings' if isinstance(load, RopeLoad) else 'forces'}.{load.name}"
+    return f"{'couplings' if isinstance(load, RopeLoad | ThreadLoad) else 'forces'}.{load.name}"
 
 
 class Law(NamedTuple):
@@ -327,9 +362,19 @@ class Mechanism:
         return next((own.start for x, own in self.load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
 
     @property
-    def rubbing(self) -> tuple[JointLoad, ...]:
-        """Friction that hangs on what its joint carries."""
-        return tuple(load for load in self.loads if isinstance(load, JointLoad) and load.presses is not None)
+    def rubbing(self) -> tuple[JointLoad | ThreadLoad, ...]:
+        """Friction that hangs on what its joint or its thread carries."""
+        return tuple(
+            load
+            for load in self.loads
+            if isinstance(load, ThreadLoad) or (isinstance(load, JointLoad) and load.presses is not None)
+        )
+
+    def rubs_in(self, load: JointLoad | ThreadLoad) -> str:
+        """Such friction and where it rubs, as paths: a load in a joint, or what a thread has itself."""
+        if isinstance(load, ThreadLoad):
+            return f"couplings.{load.name}"
+        return f"forces.{load.name} in joints.{self.joints[load.joint].name}"
 
     def expressions(self) -> Iterator[Expression]:
         """The values in time of the loads, then the laws of drives and ropes, then the conditions."""

@@ -152,7 +152,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
             load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
             b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
         )  # fmt: skip
-    assert isinstance(load, JointLoad), load  # a scene with ropes is not made smaller
+    assert isinstance(load, JointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)

@@ -151,7 +151,7 @@ STOPS = TablePlan(
 )
 COUPLED = (
     *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
-    *("radial", "axial", "torque", "tight", "slack", "tension", "last_tension"),
+    *("radial", "axial", "torque", "efficiency", "tight", "slack", "tension", "last_tension"),
 )
 COUPLINGS = TablePlan(
     "joints",

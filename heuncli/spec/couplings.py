@@ -83,6 +83,17 @@ class Gear(NamedTuple):
         return joints_of(self.terms)
 
 
+class ThreadFriction(NamedTuple):
+    """What rubs in a thread: coefficient of its flanks as in a square thread, at the mean radius [m].
+
+    Full where the spindle turns faster than `speed` [rad/s], times tanh(rate/speed).
+    """
+
+    coefficient: float
+    radius: float
+    speed: float
+
+
 class Screw(NamedTuple):
     """A thread between what turns and what slides: a cylinder's two coordinates, or a pin's and a slide's.
 
@@ -91,6 +102,7 @@ class Screw(NamedTuple):
 
     terms: tuple[Term, ...]
     lead: float
+    friction: ThreadFriction | None = None
     type: Literal["screw"] = "screw"
 
     @property

@@ -18,6 +18,7 @@ from heuncli.spec.fields import (
     LengthInTime,
     Lift,
     Number,
+    Rate,
     Stiffness,
     Switch,
 )
@@ -45,12 +46,23 @@ class GearEntry(Entry):
     helix: Angle = 0.0
 
 
+class ThreadFrictionEntry(Entry):
+    """What rubs in a thread."""
+
+    coefficient: Number | None = None
+    efficiency: Number | None = None
+    radius: Length
+    flank_angle: Angle = 0.0
+    speed: Rate
+
+
 class ScrewEntry(Entry):
     """A thread."""
 
     type: Literal["screw"]
     of: list[str]
     lead: Length
+    friction: Annotated[ThreadFrictionEntry, AsText()] | None = None
 
 
 class BeltEntry(Entry):

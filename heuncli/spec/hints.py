@@ -9,7 +9,18 @@ from typing import Any
 from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
 from heuncli.spec.entries import keys_of
-from heuncli.spec.words import ELSEWHERE, FORMS, FORMS_OF_KINDS, KEY_WORDS, MISSING, PLACES, SEVERAL, WORDS
+from heuncli.spec.words import (
+    ELSEWHERE,
+    FORMS,
+    FORMS_OF_KINDS,
+    JOINTS,
+    KEY_WORDS,
+    MISSING,
+    OF_THREADS,
+    PLACES,
+    SEVERAL,
+    WORDS,
+)
 
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
@@ -53,6 +64,10 @@ def belonging(key: str, known: Collection[str]) -> str | None:
             return f"it belongs to a body: bodies: {{NAME: {{{key}: ...}}}}"
     if key in COORDINATES and "initial" in known:
         return f"the start of a coordinate is initial: {{{key}: ...}}"
+    if "lead" in known and key in OF_THREADS:
+        return (
+            "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
+        )
     if key == "initial" and "length" in known:
         return "a rod starts as it is assembled, or with its length: ..."
     if key == "initial" and {"from", "to"} <= set(known):
@@ -72,13 +87,15 @@ def elsewhere(word: str) -> str | None:
 def of_missing(key: str, present: Collection[str]) -> str:
     """What a missing key is, or which one stands for it."""
     other = next((name for name in present if called(name, [key])), None)
-    return f"'{other}' is called {key} here" if other is not None else MISSING.get(key, f"add {key}: ...")
+    if other is not None:
+        return f"'{other}' is called {key} here"
+    return JOINTS if key == "of" and "type" in present else MISSING.get(key, f"add {key}: ...")
 
 
 def of_form(key: str, found: Any, wanted: str) -> str:
     """What a value should look like; wanted: "a list", "a mapping", ... as it is told."""
-    if wanted == "a list" and key in FORMS:
-        return FORMS[key]
+    if wanted == "a list" and (key == "of" or key in FORMS):
+        return JOINTS if key == "of" else FORMS[key]
     if wanted == "a list" and isinstance(found, str) and re.fullmatch(r"[+-]?[xyzXYZ]", found.strip()):
         axis = AXES[found.strip()[-1].lower()]
         return f"the {found.strip()[-1].lower()} axis is {axis.replace('1', '-1') if found.strip()[0] == '-' else axis}"

@@ -15,7 +15,7 @@ from heuncli.spec import couplings as c
 from heuncli.spec import format as whole
 from heuncli.spec import format_couplings as f
 from heuncli.spec.fields import EndEntry
-from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.format_rolling import RollingEntry, axle, centre
 from heuncli.spec.models import End, ResultCondition, Z
 
 PUSHES = "the slack strand of the belt {} would have to push: it needs a pretension of {} N"
@@ -47,9 +47,12 @@ def ratio(by: Following, name: str, entry: f.RatioEntry) -> c.Ratio:
 
 def wheel_meant(by: Following, entry: RollingEntry) -> c.RollingWheel:
     """The wheel that an entry of `rolling` means; in the plane all are round about z."""
-    axis = Z if by.document.head.space == "planar" else entry.axis if entry.shape == "disc" else None
+    joints = by.document.joints
+    axis = Z if by.document.head.space == "planar" else axle(entry, joints) if entry.shape == "disc" else None
+    wheel = centre(entry, joints)
+    assert wheel is not None
     return c.RollingWheel(
-        by.end(entry.wheel), axis, entry.radius, by.end(entry.on),
+        by.end(wheel), axis, entry.radius, by.end(entry.on),
         entry.normal, entry.friction, entry.slides is not None, entry.held,
     )  # fmt: skip
 
@@ -96,10 +99,24 @@ def gear(by: Following, name: str, entry: f.GearEntry) -> c.Gear:
 
 def screw(by: Following, name: str, entry: f.ScrewEntry) -> c.Screw:
     """A thread: of a cylinder its two coordinates."""
+    terms = tuple(term(by, word) for word in entry.of)
     if len(entry.of) == 1:
-        joint = entry.of[0]
-        return c.Screw((c.Term(joint, "angle", 1.0), c.Term(joint, "travel", 1.0)), entry.lead)
-    return c.Screw(tuple(term(by, word) for word in entry.of), entry.lead)
+        terms = tuple(c.Term(entry.of[0], quantity, 1.0) for quantity in ("angle", "travel"))
+    return c.Screw(terms, entry.lead, None if entry.friction is None else rubbing(entry.friction, entry.lead))
+
+
+def rubbing(given: f.ThreadFrictionEntry, lead: float) -> c.ThreadFriction:
+    """The friction of a thread: of an efficiency eta, tan(lambda + rho) = tan(lambda) / eta.
+
+    tan(lambda) = lead / (2 pi radius) is its slope, tan(rho) = coefficient / cos(flank_angle).
+    """
+    if given.coefficient is not None:
+        coefficient = given.coefficient / math.cos(given.flank_angle)
+    else:
+        assert given.efficiency is not None
+        slope = abs(lead) / (math.tau * given.radius)
+        coefficient = math.tan(math.atan(slope / given.efficiency) - math.atan(slope))
+    return c.ThreadFriction(coefficient, given.radius, given.speed)
 
 
 def belt(by: Following, name: str, entry: f.BeltEntry) -> c.Belt:

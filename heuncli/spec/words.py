@@ -40,7 +40,7 @@ KEY_WORDS = {
     "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
-    "rho": "density", "axle": "axis", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
+    "rho": "density", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
     "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
@@ -102,6 +102,7 @@ FORMS = {  # what the values of some keys look like
     "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
     "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
 }  # fmt: skip
+JOINTS = "a list of joints: [first, second]"  # what `of` is of a coupling
 PLACES = frozenset(
     {"from", "to", "center", "position", "at"}
 )  # lists of coordinates, in the body's axes or the world's
@@ -119,10 +120,16 @@ MISSING = {  # what a key is that must be there
     "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
     "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
     "curve": "its torque over its speed: a table, or an expression of rate",
+    "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the pull of each strand at rest, in N",
+    "lift": "the name of a table: the lift over the disc's angle", "contact": "roller, flat or point",
+    "set": "as {n: 1500 rpm}", "file": "the file with its triangles: rod.stl", "diameter": "in m, or with a unit",
+    "factors": "a number for each joint of of, as [1, 2]", "lead": "the travel for a turn, as 5 mm",
+    "through": "points and sheaves in order: [ground.A, cage.top]",
     "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
     "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
+OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
 BALL_AND_CV = "a constant-velocity joint is a ball, and couplings: {NAME: {type: cv, joint: BALL, axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
@@ -137,8 +144,8 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
     "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
     "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
-    "efficiency": "what a thread or gear loses is a load beside it: forces: {rubs: {type: friction, joint: spin, "
-    "torque: 0.3 N m}}",
+    "efficiency": "what gears lose is a load beside them: forces: {rubs: {type: friction, joint: spin, "
+    "torque: 0.3 N m}}; a thread has a friction of its own",
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",

@@ -20,6 +20,7 @@ from heuncli.mechanism.model import (
     PairLoad,
     PointLoad,
     RopeLoad,
+    ThreadLoad,
 )
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
@@ -131,6 +132,8 @@ class _LoadRows:
                 self._bushing(load, own)
             elif isinstance(load, RopeLoad):
                 self._rope(load, values)
+            elif isinstance(load, ThreadLoad):
+                self._thread(load)
             else:
                 self._joint_load(load, values)
 
@@ -197,6 +200,30 @@ class _LoadRows:
             )
         )
         self.parts += len(load.parts)
+
+    def _thread(self, load: ThreadLoad) -> None:
+        row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
+        self.made.append(
+            LoadRow(
+                kernel.THREAD_FRICTION,
+                self.frame.in_tree(load.a),
+                self.frame.in_tree(load.b),
+                NO_PROGRAM,
+                NO_PROGRAM,
+                NO_PROGRAM,
+                ONE,
+                in_body=1,
+                q=self.frame.relative(load.b, load.q),
+                coefficient=load.coefficient,
+                axis=load.axis,
+                speed=load.speed,
+                factor=load.factor,
+                presses=kernel.THRUST_OF_ROW,
+                held_by=GROUND,
+                row=row,
+                row_count=1,
+            )
+        )
 
     def _joint_load(self, load: JointLoad, values: Components) -> None:
         joint = self.mechanism.joints[load.joint]

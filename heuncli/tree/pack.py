@@ -482,7 +482,7 @@ class _Builder:
             pack=Pack(),
             work_at=work_at,
             contacts=tuple(self.contacts),
-            flat=not self.part_rows and self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
+            flat=self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return frame_of(with_islands(layout))
 

@@ -49,6 +49,14 @@ def test_belt(crossed: bool) -> None:
     near(found.joints["w"]["force"][0], -pull, F, ROUNDING)
     near(found.joints["p"]["force"][0], pull, F, ROUNDING)
     near(found.joints["w"]["moment"][0], np.cross((0, 0, 0.1), pull), F, ROUNDING)
+    for name, on, center, turns in (
+        ("wheel", pull, (0.5, 0, 0.1), sense * F * r2),
+        ("pinion", -pull, (0, 0, 0), -F * r1),
+    ):
+        own = told["on"][name]
+        near(own["force"][0], on, F, ROUNDING)
+        about = own["moment"][0] + np.cross(own["point"][0] - center, on)
+        near(about, (0.0, 0.0, turns) - np.cross((0, 0, center[2]), on), F, ROUNDING)
     near(found.foundation["force"][0], 0.0, F, ROUNDING)
     assert not found.warnings
 
@@ -119,6 +127,21 @@ def test_screw_between_a_spindle_and_a_nut(order: list[str]) -> None:
     near(found.couplings["thread"]["torque"], thrust * by, thrust, ROUNDING)
     near(found.joints["p"]["force"][0], (0, 0, 9.81 + thrust), thrust, ROUNDING)
     near(found.joints["n"]["moment"][0][2], -thrust * by, thrust, ROUNDING)
+
+
+@pytest.mark.parametrize("reverse", [1, -1])
+def test_a_spindle_that_slides_takes_its_thread_with_it(reverse: int) -> None:
+    """x_n - x_s = p phi: N (1/m_n + 1/m_s + p^2/J) = p T/J; both slide, and none of it is lost in half a second."""
+    scene = screw(lead="1 m") | {"gravity": [0, 0, 0], "analysis": {"duration": 0.5, "samples": 3}}
+    a, b = ("ground.A", "spindle.c")[::reverse]
+    scene["joints"]["p"] = {"type": "cylinder", "from": a, "to": b, "axis": [0, 0, 1]}
+    scene["forces"] = {"motor": {"type": "couple", "on": "spindle", "vector": [0, 0, 3]}}
+    scene["bodies"]["spindle"]["mass"] = 5.0
+    found, p = solved(scene), reverse / math.tau
+    thrust = 3 * p / 0.02 / (1 / 20 + 1 / 5 + p * p / 0.02)
+    near(found.couplings["thread"]["force"], thrust, abs(thrust), 1e-9)
+    for body, mass in (("nut", 20), ("spindle", -5)):
+        near(found.bodies[body]["position"][-1][2], thrust / mass * 0.125, 1.0, 1e-9)
 
 
 def test_screw_in_a_cylinder() -> None:

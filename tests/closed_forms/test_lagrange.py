@@ -235,7 +235,7 @@ def test_friction_by_what_a_driven_joint_carries() -> None:
     near(found.drives, [results.joints["main"]["drive"][0]])
     assert found.residual <= DIGITS
     for asked in ({"state_space": True}, {}):
-        with pytest.raises(SolveError, match=r"hangs on what its joint carries"):
+        with pytest.raises(SolveError, match=r"friction hangs on what presses"):
             if asked:
                 told(text, **asked)
             else:

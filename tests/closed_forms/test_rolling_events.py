@@ -34,6 +34,9 @@ analysis: {duration: 1, samples: 3}
 """
 
 
+LIFTS = "the wheel rear_tyre lifts: it would have to be pulled onto its plane"
+
+
 def slowed(torque: float) -> tuple[float, float, float]:
     """By a brake on the front axle: what the rear and the front wheel bear, and the front one's friction [N].
 
@@ -64,6 +67,16 @@ def test_a_cart_that_tips_ends_the_run_with_its_reason() -> None:
     near(own["friction"][1], friction, 100.0)
     near(own["grip"][1], 0.8 * front - friction, 100.0)
     near(r.couplings["rear_tyre"]["normal"][1], rear, 100.0)
+
+
+def test_a_wheel_that_lifts_from_the_start_on_ends_the_run_there() -> None:
+    """As a rope that would have to push does: 15 N m lift the rear wheel, until they would let go of it."""
+    r = solved(CART.replace('"30*t"', '"15 - 30*t"'))
+    assert r.status == {"code": "stopped", "message": f"at the start {LIFTS}"}
+    assert f"stopped before the end: at the start {LIFTS}" in r.warnings
+    assert r.time.tolist() == [0.0]
+    assert r.events["rear_tyre_lifts"]["begins"]
+    near(r.couplings["rear_tyre"]["normal"][0], slowed(15)[0], 100.0)
 
 
 def test_held_wheels_are_pulled() -> None:

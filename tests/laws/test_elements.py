@@ -105,7 +105,7 @@ def every_body_balances(scene: dict[str, Any], found: Results) -> None:
 
 
 @pytest.mark.parametrize("kind", kinds())
-def test_elements_exert_nothing_on_the_whole_and_take_no_power(kind: str) -> None:
+def test_elements_exert_nothing_on_the_whole_and_give_no_power(kind: str) -> None:
     found = run(kind, 100 + list(ELEMENTS).index(kind))[1].results
     nothing_and_no_power(found)
 
@@ -124,7 +124,7 @@ def nothing_and_no_power(found: Results) -> None:
                 size += float(np.linalg.norm(force) + np.linalg.norm(moment))
             if not np.isnan(total).any():
                 near(total, 0.0, 10.0 * size, 1e-10)
-                near(power, 0.0, 10.0 * size, 1e-9)
+                near(power, min(power, 0.0) if "efficiency" in own else 0.0, 10.0 * size, 1e-9)  # what rubs takes it
 
 
 RAIL = """\

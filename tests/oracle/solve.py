@@ -20,6 +20,7 @@ import numpy as np
 from tests.oracle.loads import Push, from_outside, gathered, pushes
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.rows import Rows, assemble
+from tests.oracle.threads import rubbing, threads
 from tests.oracle.turns import Array, cross
 
 RANK = 1e-9  # singular values of the scaled J below this part of the largest count as zero
@@ -44,6 +45,19 @@ class Reaction(NamedTuple):
     weight: Array
 
 
+class Grounded(NamedTuple):
+    """What a coupling puts ON the ground, force and moment about the origin (6,); share: in each self-stress (6, k)."""
+
+    wrench: Array
+    share: Array
+
+    def about(self, point: Array) -> Grounded:
+        """The moments about a point."""
+        moved = np.eye(6)
+        moved[3:, :3] = -np.cross(point, np.eye(3)).T  # M about it is M - point x F
+        return Grounded(moved @ self.wrench, moved @ self.share)
+
+
 @dataclass(frozen=True, eq=False)
 class Solution:
     """One instant, world axes. Vectors by body or joint name.
@@ -57,6 +71,7 @@ class Solution:
     acceleration: dict[str, Array]
     angular_acceleration: dict[str, Array]
     reactions: dict[str, Reaction]
+    grounded: dict[str, Grounded]
     loads: dict[str, list[Push]]
     foundation_force: Array
     foundation_moment: Array
@@ -135,10 +150,23 @@ def solve(
     M; what that leaves is split by the first.
     """
     read = scene if isinstance(scene, Model) else model(scene)
-    loads = pushes(read, state, t)
     size = scene_length(read, state)
+    loads = acting(read, state, t, size)
     found = accelerations(read, state, t, loads, size)
     return answer(read, state, found, loads, size, about, stiffness, length)
+
+
+def acting(read: Model, state: State, t: float, size: float) -> dict[str, list[Push]]:
+    """All applied loads, and what rubs in threads by what these carry under them."""
+    given = pushes(read, state, t)
+
+    def multipliers(more: Mapping[str, list[Push]]) -> dict[str, float]:
+        found = accelerations(read, state, t, {**given, **more}, size)
+        rows = {row.joint: k for k, row in enumerate(found.rows.rows)}
+        assert not any(np.abs(found.self_stress[rows[name]]).max(initial=0.0) > OPEN for name in threads(read))
+        return {name: float(found.least[rows[name]]) for name in threads(read)}
+
+    return given | rubbing(read, state, multipliers)
 
 
 def answer(
@@ -163,6 +191,7 @@ def answer(
         acceleration={b: V_dot[k, :3] for k, b in enumerate(read.names)},
         angular_acceleration={b: V_dot[k, 3:] for k, b in enumerate(read.names)},
         reactions=reactions,
+        grounded=on_the_ground(read, state, found, lam),
         loads=loads,
         foundation_force=s,
         foundation_moment=M_s,
@@ -297,6 +326,24 @@ def reactions_of(
             unique[6] = unique[:3].all()
         reactions[j.name] = Reaction(point, wrench[:3], wrench[3:6], float(wrench[6]), unique, share, weight)
     return reactions
+
+
+def on_the_ground(scene: Model, state: State, found: Motion, lam: Array) -> dict[str, Grounded]:
+    """What rows of no joint put ON the ground: the opposite of what they put on all bodies, for they are inner."""
+    names = {j.name for j in scene.joints}
+    rows: dict[str, list[int]] = {}
+    for k, row in enumerate(found.rows.rows):
+        if row.joint not in names:
+            rows.setdefault(row.joint, []).append(k)
+    grounded = {}
+    for name, own in rows.items():
+        G = np.zeros((6, len(own)))
+        for i, body in enumerate(scene.names):
+            c = state[body].point(scene.masses[body].center)
+            F, M = (found.rows.J[own, 6 * i + k : 6 * i + k + 3] for k in (0, 3))
+            G -= np.concatenate([F, M + np.cross(c, F)], axis=1).T
+        grounded[name] = Grounded(G @ lam[own], G @ found.self_stress[own])
+    return grounded
 
 
 def scene_length(scene: Model, state: State) -> float:

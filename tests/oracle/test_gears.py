@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.oracle.gears import load, teeth
-from tests.oracle.loads import pushes
-from tests.oracle.read import State, model, start_state
+from tests.oracle.gears import Teeth, load, pulls, teeth
+from tests.oracle.read import State, model, placed, start_state
 from tests.oracle.rows import assemble, coordinates, velocities
-from tests.oracle.solve import accelerations, scene_length
+from tests.oracle.solve import accelerations, acting, scene_length, wrench_map
 from tests.oracle.sums import exerted, sums
+from tests.oracle.threads import threads
 from tests.oracle.turns import Array
 from tests.shared import checks
 from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.geared_scenes import geared
-from tests.shared.scenes import near
+from tests.shared.scenes import near, terms_at
 from tests.shared.seeds import spared
+from tests.shared.train_scenes import train
 from tests.shared.trees import ABOUT, Case, case
 
 ALL = spared(range(15), frozenset({1, 2, 3}))
@@ -59,12 +61,63 @@ def test_what_is_coupled_twice(kind: str) -> None:
     state, joints = start_state(scene), {j.name: j for j in read.joints}
     speeds = [c.get("rate", c.get("speed")) for c in (coordinates(joints[word], state) for word in of)]
     assert min(map(abs, speeds)) > 1e-3
+    scene["couplings"][name].pop("friction", None)  # which nobody could tell then
     scene["couplings"]["again"] = {"type": "ratio", "of": of, "factors": [1.0, -speeds[0] / speeds[1]]}
     c = case(scene)
     as_the_oracle_says(c)
     told = c.found.couplings
     assert all(np.isnan(told[own]["on"][body]["force"]).any() or np.isnan(told[own]["on"][body]["moment"]).any()
                for own in told for body in told[own]["on"])  # fmt: skip
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(14))
+def test_trains_with_more_meshes_than_hold_them(seed: int) -> None:
+    """Planets between suns, a ring and each other, in closed loops of meshes; certain sums against the dense matrix."""
+    c = train(seed)
+    as_the_oracle_says(c)
+    certain_sums_are_certain(c)
+
+
+def test_trains_hold_much_twice() -> None:
+    """So that what is said of them is not said of nothing."""
+    found = [train(seed).found for seed in range(14)]
+    assert sum(own.model["redundant"] > 1 for own in found) >= 4
+    sums = [name for own in found for one in own.certain_sums for name in one["terms"] if name.startswith("couplings.")]
+    assert len(sums) >= 10
+
+
+def certain_sums_are_certain(c: Case) -> None:
+    """None of the dense solution's self-stresses has a share in a sum that is told, and its value is the oracle's."""
+    for k, state in enumerate(c.states):
+        o, t = c.oracle[k], float(c.study.results.time[k])
+        size = scene_length(c.read, state)
+        found = accelerations(c.read, state, t, acting(c.read, state, t, size), size)
+        rows = {row.joint: i for i, row in enumerate(found.rows.rows)}
+        ways = {own.name: forward(c, own, state) for own in teeth(c.read)}
+        for told in c.found.certain_sums:
+            line, weight = np.zeros(len(found.rows.rows)), 0.0
+            for path, factor in terms_at(told["terms"], k).items():
+                _, name, what, *component = path.split(".")
+                weight += abs(factor)
+                if name in ways:
+                    line[rows[name]] += factor * ways[name]
+                    continue
+                joint = next(j for j in c.read.joints if j.name == name)
+                row = {"force": 0, "moment": 3}[what] + "xyz".index(component[0])
+                line += factor * wrench_map(found.rows, joint)[row]
+            near(line @ found.self_stress, 0.0, weight * np.abs(found.self_stress).max())
+            near(told["value"][k], line @ found.least, weight * c.force[k] * max(o.length, 1.0))
+
+
+def forward(c: Case, own: Teeth, state: State) -> float:
+    """1 where the oracle's direction of a tooth force is that in which the first gear drives on, else -1."""
+    joint = next(j for j in c.read.joints if j.name == c.scene["couplings"][own.name]["of"][0])
+    at, carrier = placed(state, joint.b.body), placed(state, own.carrier)
+    axis = placed(state, joint.a.body).rotation @ joint.axis
+    way = np.cross(axis, carrier.point(own.P) - at.point(joint.b.point))
+    way = way if own.first == joint.b.body else -way
+    return math.copysign(1.0, float(way @ (carrier.rotation @ own.f)))
 
 
 def drawn(kind: str, seed: int) -> dict[str, Any]:
@@ -82,7 +135,10 @@ def on_bodies(c: Case, name: str, state: State, multiplier: float) -> dict[str, 
     (of,) = (of for of in teeth(c.read) if of.name == name)
     place, force, moment = load(c.read, of, state, multiplier)
     wrench = np.concatenate([force, moment + np.cross(place, force)])
-    return {of.second: wrench, of.first: -wrench}
+    found = {of.second: wrench, of.first: -wrench}
+    for body, at, pull in pulls(c.read, state).get(name, ()):
+        found[body] = found[body] + np.concatenate([pull, np.cross(at, pull)])
+    return found
 
 
 def as_the_oracle_says(c: Case) -> None:
@@ -92,11 +148,15 @@ def as_the_oracle_says(c: Case) -> None:
     checks.same_foundation(c)
     for k, state in enumerate(c.states):
         t = float(c.study.results.time[k])
-        found = accelerations(c.read, state, t, pushes(c.read, state, t), scene_length(c.read, state))
+        size = scene_length(c.read, state)
+        loads = acting(c.read, state, t, size)
+        found = accelerations(c.read, state, t, loads, size)
         for name in c.scene["couplings"]:
             (row,) = (i for i, row in enumerate(found.rows.rows) if row.joint == name)
             is_open = bool(np.abs(found.self_stress[row]).max(initial=0.0) > 1e-9)
             wanted = on_bodies(c, name, state, found.least[row])
+            for push in loads[name] if name in threads(c.read) else ():
+                wanted[push.body] = wanted[push.body] + np.concatenate([push.force, push.about(np.zeros(3))])
             on = c.found.couplings[name]["on"]
             assert {*on} == {*wanted}
             for body, told in on.items():

@@ -7,7 +7,8 @@ import numpy as np
 from heuncli.results import Array
 from tests.oracle.read import GROUND, Joint, State, placed
 from tests.oracle.rows import coordinates, directions
-from tests.oracle.totals import elements, supports
+from tests.oracle.solve import OPEN
+from tests.oracle.totals import Wrench, elements, supports
 from tests.oracle.turns import cross
 from tests.shared.scenes import near
 from tests.shared.trees import ABOUT, Case
@@ -102,6 +103,8 @@ def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
         standing = elements(c.plain, state, o, ABOUT)
         coupled = {name for name, own in c.found.couplings.items() if GROUND in own["on"]}
         assert set(standing) | coupled == set(found.get("elements", {}))
+        for name in coupled:
+            same_grounded(c, k, name, standing.pop(name, Wrench(np.zeros(3), np.zeros(3))), tolerance)
         for name, w in standing.items():
             own = found["elements"][name]
             drive = (c.scene.get("drives") or {}).get(name)
@@ -110,6 +113,21 @@ def same_foundation(c: Case, tolerance: float = 1e-9) -> None:
                 continue
             near(own["force"][k], w.force, F, tolerance)
             near(own["moment"][k] + cross(own["point"][k] - ABOUT, own["force"][k]), w.moment, F * c.length, tolerance)
+
+
+def same_grounded(c: Case, k: int, name: str, beside: Wrench, tolerance: float) -> None:
+    """What a coupling puts on the ground, with its loads beside what it holds; what is open in it is nan."""
+    own, o, F = c.found.foundation["elements"][name], c.oracle[k], c.force[k]
+    point = own["point"][k]
+    wrench, share = o.grounded[name].about(point)
+    wrench = wrench + np.concatenate([beside.force, beside.moment - cross(point - ABOUT, beside.force)])
+    size = np.repeat([1.0, o.length], 3)
+    unique = np.all(np.abs(share) / size[:, None] <= OPEN * o.largest(), axis=1)
+    told = np.concatenate([own["force"][k], own["moment"][k]])
+    assert (~np.isnan(told)).tolist() == unique.tolist(), f"{name} ON the ground at instant {k}"
+    for part in (slice(0, 3), slice(3, 6)):
+        wanted = np.where(unique[part], wrench[part], 0.0)
+        near(np.where(unique[part], told[part], 0.0), wanted, F if part.start == 0 else F * c.length, tolerance)
 
 
 def same_coordinates(c: Case) -> None:

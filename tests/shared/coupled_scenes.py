@@ -17,7 +17,7 @@ from heuncli.results import Array
 from tests.oracle.read import GROUND, Placed, placed, state_at
 from tests.oracle.scenes import Maker
 from tests.oracle.turns import about, across, random_rotation, random_unit
-from tests.shared.geared_scenes import belt, member, mesh, thread
+from tests.shared.geared_scenes import belt, member, mesh, rubs, thread
 from tests.shared.rolling_scenes import stand
 from tests.shared.scenes import solved
 from tests.shared.trees import cut_through
@@ -76,7 +76,8 @@ def gears(form: str) -> Callable[[Parts, str], None]:
 
 def threaded_cylinder(parts: Parts, name: str) -> None:
     joint = parts.member(parts.base(), name, "cylinder", parts.rng.uniform(-1, 1, 3), random_unit(parts.rng))
-    parts.couple(name, {"type": "screw", "of": [joint], "lead": float(parts.rng.uniform(-3, 3))})
+    lead = float(parts.rng.uniform(-3, 3))
+    parts.couple(name, {"type": "screw", "of": [joint], "lead": lead, **rubs(lead)})
 
 
 def ratio(parts: Parts, name: str) -> None:

@@ -82,7 +82,19 @@ def thread(
     member(maker, rng, carrier, spindle, "pin", rng.uniform(-1, 1, 3), n)
     sense = math.copysign(1.0, float(rng.standard_normal()))
     member(maker, rng, carrier, nut, "slide", rng.uniform(-1, 1, 3), sense * n)
-    return {"type": form, "of": [f"j_{spindle}", f"j_{nut}"], "lead": float(rng.uniform(-3, 3))}
+    lead = float(rng.uniform(-3, 3))
+    return {"type": form, "of": [f"j_{spindle}", f"j_{nut}"], "lead": lead, **rubs(lead)}
+
+
+def rubs(lead: float) -> dict[str, Any]:
+    """The friction of every other thread, as the digits of its lead say."""
+    own = np.random.default_rng(int(1e6 * abs(lead)))
+    if own.random() < 0.5:
+        return {}
+    numbers = {"coefficient": own.uniform(0.05, 0.3), "radius": own.uniform(0.1, 0.4), "speed": own.uniform(0.1, 1.0)}
+    if own.random() < 0.5:
+        numbers["flank_angle"] = own.uniform(0.1, 0.5)
+    return {"friction": {key: float(value) for key, value in numbers.items()}}
 
 
 def member(

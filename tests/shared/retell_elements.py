@@ -72,6 +72,7 @@ def elements_in_units(tree: Tree, tell: Tell, mass: float, length: float, time: 
     joints = tree.get("joints") or {}
     for entry in (tree.get("couplings") or {}).values():
         tell(entry, COUPLING)
+        tell(entry.get("friction", {}), {"radius": LENGTH, "speed": RATE})
         for place in entry.get("through", ()):
             if isinstance(place, dict):
                 tell(place, {"point": LENGTH, "sheave": LENGTH, "radius": LENGTH, "at": LENGTH})

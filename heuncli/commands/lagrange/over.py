@@ -130,7 +130,8 @@ def followed(spec: Spec, asked: Range, start: float, way: Array) -> tuple[FreedS
     setup = set_up(spec._replace(drives=drives, joints=joints, impulses={}, analysis=analysis), reduce=False)
     layout = setup.scene.layout
     for load in layout.mechanism.rubbing:
-        message = f"forces.{load.name} hangs on what its joint carries: it is told of an instant, not over a range"
+        where = layout.mechanism.rubs_in(load)
+        message = f"friction hangs on what presses, {where}: it is told of an instant, not over a range"
         raise refused(asked, message, "leave it out; or take one instant")
     if holds_speed(layout).any() and not layout.mechanism.planar:
         message = "what rolls comes to poses by its way: no coordinate tells them"

@@ -114,8 +114,10 @@ def require_driven(at: Instant, by: Chosen) -> None:
 
 def require_given_loads(at: Instant) -> None:
     """Raise SolveError for friction that hangs on what its joint carries: it would answer the inputs, too."""
-    for load in at.setup.scene.mechanism.rubbing:
-        message = f"forces.{load.name} hangs on what its joint carries, and so on the inputs: no state space has it yet"
+    mechanism = at.setup.scene.mechanism
+    for load in mechanism.rubbing:
+        where = mechanism.rubs_in(load)
+        message = f"friction hangs on what presses, {where}, and so on the inputs: no state space has it yet"
         raise SolveError(Problem(CODE, message, hint="give friction a size: friction: {type: friction, force: 20 N}"))
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from heuncli.errors import Problem
 from heuncli.integration.evaluator import Recovered
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import JointLoad, Mechanism
+from heuncli.mechanism.model import JointLoad, Mechanism, ThreadLoad
 from heuncli.response import Workspace
 
 SAID = {  # code, what was found, what to do next
@@ -30,8 +32,12 @@ SAID = {  # code, what was found, what to do next
 def jammed(mechanism: Mechanism, found: int, row: int, t: float) -> Problem:
     """The problem of what the kernel found of a row of its table of loads."""
     load = next(load for load, rows in mechanism.load_rows() if row in range(rows.start, rows.stop))
-    assert isinstance(load, JointLoad), load
     code, said, hint = SAID[found]
+    if isinstance(load, ThreadLoad):
+        hint = "a drive of the spindle or more inertia on it, as its motor's; a smaller coefficient, or a steeper lead"
+        said = said.replace("the joint", "its flanks")
+        return Problem(code, f"at t = {t:.9g} s the thread couplings.{load.name} rubs, and {said}", hint=hint)
+    assert isinstance(load, JointLoad), load
     joint = mechanism.joints[load.joint].name
     return Problem(code, f"at t = {t:.9g} s forces.{load.name} rubs in joints.{joint}, and {said}", hint=hint)
 
@@ -50,9 +56,9 @@ def jammed_beyond(mechanism: Mechanism, workspace: Workspace, t: float) -> list[
     return [jammed(mechanism, found, row, at)] if found != kernel.FOUND and at >= t else []
 
 
-def rubs_openly(names: list[tuple[str, str]], t: float) -> Problem:
-    """The problem of friction by what nobody can tell: names of loads with their joints."""
-    listed = ", ".join(f"forces.{load} in joints.{joint}" for load, joint in names)
+def rubs_openly(mechanism: Mechanism, loads: Sequence[JointLoad | ThreadLoad], t: float) -> Problem:
+    """The problem of friction by what nobody can tell."""
+    listed = ", ".join(mechanism.rubs_in(load) for load in loads)
     message = f"at t = {t:.9g} s friction hangs on what redundant joints leave open: {listed}"
     hint = "joints that hold less, as heun run proposes without that friction; or friction of a given size"
     return Problem("friction-open", message, hint=hint)

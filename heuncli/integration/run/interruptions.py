@@ -166,10 +166,13 @@ def ends_pushed(layout: Layout, r: int, owner: int) -> bool:
 
 
 def require_pull(mechanism: Mechanism, rope: str | None) -> None:
-    """Raise SolveError for a rope, of a joint or a coupling, that would have to push in a blow at the start."""
+    """Raise SolveError for a rope, of a joint or a coupling, or a cam's follower that lifts in a blow at the start."""
     if rope is not None:
-        coupled = rope in {coupling.name for coupling in mechanism.couplings}
-        what, where = ("rope", "couplings") if coupled else ("rod", "joints")
-        message = f"in the blow at t = 0 s the {what} {rope} would have to push (tension_only)"
+        kind = {coupling.name: coupling.given.type for coupling in mechanism.couplings}.get(rope)
+        lost = f"the {kind or 'rod'} {rope} would have to push (tension_only)"
         hint = "with restitution: 0 (to 1) it goes slack, and catches again"
-        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"{where}.{rope}"))
+        if kind == "cam":
+            lost = f"contact is lost: the follower of cam {rope} lifts off"
+            hint = "with restitution: 0 (to 1) it flies, and strikes again"
+        where = "joints" if kind is None else "couplings"
+        raise SolveError(Problem("rope-pushes", f"in the blow at t = 0 s {lost}", hint=hint, about=f"{where}.{rope}"))

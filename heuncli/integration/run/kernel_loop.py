@@ -11,7 +11,7 @@ from heuncli import tolerances
 from heuncli.integration.methods.method import Method
 from heuncli.kernel.choose import integration
 from heuncli.kernel.choose import steps as kernel
-from heuncli.mechanism.model import BushingLoad, JointLoad, Load
+from heuncli.mechanism.model import BushingLoad, JointLoad, Load, ThreadLoad
 from heuncli.records import record
 from heuncli.response import Workspace
 from heuncli.results import Array
@@ -140,5 +140,5 @@ def stiffness_of(method: Method, layout: Layout) -> dict[str, float]:
 
 def depends(load: Load) -> bool:
     """Whether a load depends on where bodies are, or how fast: a spring, damper, friction, or by its expression."""
-    resists = isinstance(load, BushingLoad) or (isinstance(load, JointLoad) and load.kind == "friction")
+    resists = isinstance(load, BushingLoad | ThreadLoad) or (isinstance(load, JointLoad) and load.kind == "friction")
     return resists or not load.values or any(value.uses for value in load.values)

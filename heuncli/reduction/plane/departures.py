@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
-from heuncli.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad
+from heuncli.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad, ThreadLoad
 from heuncli.records import record
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
@@ -125,6 +125,8 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
                     yield from _beside(seen, height, end, point, f"a point of {name}")
         elif isinstance(load, BushingLoad):
             yield from _bushing(seen, load, height)
+        elif isinstance(load, ThreadLoad):
+            yield Departure(f"couplings.{load.name} rubs along its axis", 1.0, True)
         elif not isinstance(load, JointLoad):
             yield Departure(f"couplings.{load.name} may run out of it", 1.0, True)
         elif load.kind == "turn_spring":

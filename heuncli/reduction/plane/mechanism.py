@@ -154,7 +154,7 @@ class Flat:
             return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])
         if isinstance(load, JointLoad):
             return self.turn_spring(load) if load.kind == "turn_spring" else load
-        assert isinstance(load, PointLoad), load  # a scene with ropes is not flattened
+        assert isinstance(load, PointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
         if load.body == GROUND:
             return load
         S = self.axes(load.body) if load.in_body else self.seen.E

@@ -23,12 +23,13 @@ from heuncli.spec.rules import (
     rolling,
     sections,
     stops,
+    threads,
 )
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, rolling, cams,
-    sections,
+    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, threads, rolling,
+    cams, sections,
     analysis, methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 

@@ -37,7 +37,8 @@ def ends(draft: DraftDocument) -> Iterator[tuple[Path_, EndEntry]]:
         if isinstance(coupling, fc.GearEntry | fc.CamEntry) and coupling.at is not None:
             yield ("couplings", name, "at"), coupling.at
     for name, wheel in document.rolling.items():
-        yield ("rolling", name, "wheel"), wheel.wheel
+        if wheel.wheel is not None:
+            yield ("rolling", name, "wheel"), wheel.wheel
         yield ("rolling", name, "on"), wheel.on
     for name, section in document.sections.items():
         end = end_of(section.reduce_to)
@@ -80,6 +81,9 @@ def bodies_spoken_of(draft: DraftDocument) -> Iterator[tuple[Path_, str, bool]]:
     for name, blow in draft.document.impulses.items():
         if blow.body is not None:
             yield ("impulses", name, "body"), blow.body, False
+    for name, wheel in draft.document.rolling.items():
+        if wheel.body is not None:
+            yield ("rolling", name, "body"), wheel.body, True
 
 
 STANDING = ("joints", "couplings", "rolling", "foundation", "sections")  # where the ground may be named
@@ -160,11 +164,11 @@ def unknown_joint(draft: DraftDocument) -> Iterator[Violation]:
     document = draft.document
     naming = {
         "drives": document.drives, "forces": document.forces, "stops": document.stops, "latches": document.latches,
+        "rolling": document.rolling,
     }  # fmt: skip
     for block, entries in naming.items():
+        key = "axle" if block == "rolling" else "joint"
         for name, entry in entries.items():  # type: ignore[attr-defined]
-            joint = getattr(entry, "joint", None)
+            joint = getattr(entry, key, None)
             if joint is not None and joint not in joints:
-                yield Violation(
-                    (block, name, "joint"), f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints")
-                )
+                yield Violation((block, name, key), f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints"))

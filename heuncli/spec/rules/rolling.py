@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from heuncli import tolerances
-from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.format_rolling import AXLES, RollingEntry, axle, centre
 from heuncli.spec.names import GROUND
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.turns import unit
@@ -18,21 +18,27 @@ def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
     planar = draft.document.head.space == "planar"
     for name, wheel in draft.document.rolling.items():
         path = ("rolling", name)
-        if wheel.shape == "disc" and wheel.axis is None and not planar:
+        yield from named_once(path, wheel, draft)
+        if wheel.wheel is None and centre(wheel, draft.document.joints) is None:
+            continue  # what it is named by is told of
+        if wheel.shape == "disc" and axle(wheel, draft.document.joints) is None and wheel.axle is None and not planar:
             hint = "axis: that of its axle, in its own axes, as [0, 1, 0]; what is round all over is shape: sphere"
             yield Violation(path, "a disc without an axle", hint, key=True)
         for key in ("axis", "slides") if wheel.shape == "sphere" else ():
             if getattr(wheel, key) is not None:
                 yield Violation((*path, key), f"a sphere with {key}", "leave it out, or leave shape out", key=True)
-        if wheel.wheel.body == wheel.on.body:
+        body = wheel.body if wheel.wheel is None else wheel.wheel.body
+        if body == wheel.on.body:
             message, hint = (
-                f"wheel and on are both on {wheel.on.body}",
+                f"wheel and on are both on {body}",
                 "a wheel rolls on another body, or on the ground",
             )
             yield Violation((*path, "on"), message, hint)
-        elif wheel.wheel.body == GROUND:
+        elif body == GROUND:
             yield Violation(
-                (*path, "wheel"), "the ground does not roll", "the wheel is a body, the plane may be ground's"
+                (*path, "wheel" if wheel.body is None else "body"),
+                "the ground does not roll",
+                "the wheel is a body, the plane may be ground's",
             )
         if wheel.friction is not None and wheel.friction < 0.0:
             message = f"a coefficient of friction of {wheel.friction:g}"
@@ -43,6 +49,35 @@ def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
                 yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
         if planar:
             yield from out_of_plane(path, wheel)
+
+
+def named_once(path: tuple[str, str], wheel: RollingEntry, draft: DraftDocument) -> Iterator[Violation]:
+    """A wheel is a point of a body, with the axis of a disc; or a body and the pin in which it turns."""
+    if wheel.wheel is not None:
+        for key in ("body", "axle"):
+            if getattr(wheel, key) is not None:
+                hint = "wheel and axis, or body and axle: the pin in which it turns"
+                yield Violation((*path, key), f"wheel and {key} are both given", hint, key=True)
+        return
+    if wheel.body is None and wheel.axle is None:
+        yield Violation(path, "'wheel' is missing", "its centre: body.point; or body: and axle: its pin", key=True)
+    for key, other in (("body", "axle"), ("axle", "body")):
+        if getattr(wheel, key) is None and getattr(wheel, other) is not None:
+            hint = (
+                "axle: the pin in which it turns" if key == "axle" else "body: which of the two of the pin the wheel is"
+            )
+            yield Violation(path, f"'{key}' is missing beside '{other}'", hint, key=True)
+    joint = draft.document.joints.get(wheel.axle or "")
+    if joint is not None and joint.type not in AXLES:
+        hint = f"the name of a joint of type {' or '.join(AXLES)}; or wheel: body.point and axis:"
+        yield Violation(
+            (*path, "axle"), f"{wheel.axle} is of type {joint.type}: nothing turns about one axis in it", hint
+        )
+    elif joint is not None and wheel.body is not None and centre(wheel, draft.document.joints) is None:
+        hint = f"{joint.from_.body} or {joint.to.body}"
+        yield Violation((*path, "body"), f"{wheel.body} is not at the joint {wheel.axle}", hint)
+    for key in ("axis",) if wheel.axle is not None and wheel.axis is not None else ():
+        yield Violation((*path, key), f"axle and {key} are both given", "the axle has one: leave it out", key=True)
 
 
 def out_of_plane(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:

@@ -56,8 +56,14 @@ def with_events(study: Study, setup: Setup, solve: Solve) -> Study:
 
 
 def ends_at(condition: WatchedCondition, found: Mapping[str, Changes]) -> float | None:
-    """The instant at which a condition ends the motion, if it does."""
+    """The instant at which a condition ends the motion, if it does.
+
+    What entries bring with them, such as a wheel that lifts, ends it at the start, too: what is asked for in `until`
+    has to become true.
+    """
     changes = found[condition.name]
+    if changes.begins and condition.ends and isinstance(condition, ResultCondition) and condition.why:
+        return 0.0
     became = changes.times[changes.to]
     return float(became[0]) if condition.ends and len(became) else None
 
@@ -299,16 +305,19 @@ def ending(results: Results, last: WatchedCondition, changes: Changes) -> Result
 
 def with_reason(results: Results, condition: WatchedCondition, changes: Changes, why: str) -> Results:
     """The results with a sentence on a condition that an entry brings with it, if it ever is true."""
-    if changes.begins:
-        return changed(results, warnings=(*results.warnings, f"at the start {why}"))
     became = np.flatnonzero(changes.to)
-    if not len(became):
+    if changes.begins:
+        sentence = f"at the start {why}"
+    elif len(became):
+        k = int(became[0])
+        sentence = f"at t = {instant(float(changes.times[k]), float(changes.error[k]))} s {why}"
+    else:
         return results
-    k = int(became[0])
-    sentence = f"at t = {instant(float(changes.times[k]), float(changes.error[k]))} s {why}"
     if condition.ends:
         status: Status = {"code": "stopped", "message": sentence}
-        return changed(results, status=status, model=results.model | {"until": [sentence]})
+        warned = (f"stopped before the end: {sentence}",) if changes.begins else ()
+        ended = changed(results, status=status, model=results.model | {"until": [sentence]})
+        return changed(ended, warnings=(*results.warnings, *warned))
     return changed(results, warnings=(*results.warnings, sentence))
 
 

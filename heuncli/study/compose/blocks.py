@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.actions import AppliedLoad, whole_joint_actions
+from heuncli.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.coupling_numbers import coupling_block
-from heuncli.kinetostatics.couplings import coupling_actions
+from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
 from heuncli.kinetostatics.energy import system_vector
 from heuncli.kinetostatics.foundation import foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
@@ -48,13 +48,19 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
         shown["stops"] = stops(recovery.asked_joints)
         names = [body.name for body in mechanism.bodies]
         struck = bool(recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        shown["couplings"] = {own.coupling.name: coupling_block(own, names) for own in recovery.couplings}
+        shown["couplings"] = {
+            own.coupling.name: coupling_block(own, names, pretension(own, recovery.loads)) for own in recovery.couplings
+        }
         for own in recovery.couplings:
             if own.coupling.given.type in ("gear", "screw", "belt"):
                 from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
-                given = own.coupling.given
-                shown["couplings"][own.coupling.name] |= TOLD[given.type](given, own.carried, struck)
+                given, block = own.coupling.given, shown["couplings"][own.coupling.name]
+                block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
+            if own.friction is not None:
+                from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
+
+                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 
@@ -179,6 +185,13 @@ def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> Forc
         (applied.action.force[:, None] @ R)[:, 0], (applied.action.moment[:, None] @ R)[:, 0]
     ))  # fmt: skip
     return {"shift": shift, "turn": turn, "force": force, "moment": moment}
+
+
+def pretension(of: CouplingLoads, loads: Sequence[AppliedLoad]) -> list[Action]:
+    """What a belt pulls its pulleys together with besides, a load by its name; in a blow no load acts."""
+    if of.coupling.given.type != "belt":
+        return []
+    return [own.action for own in loads if own.load.name == of.coupling.name]
 
 
 def forces(loads: Sequence[AppliedLoad], states: BodyStates, coupled: Set[str] = frozenset()) -> dict[str, ForceBlock]:

@@ -153,7 +153,8 @@ class Recovery:
     def couplings_of(self, decided: Resolution | None) -> list[CouplingLoads]:
         """What they exert after a split."""
         more = decided.more if decided is not None else None
-        return [own.plus(more) for own in coupling_loads(self.setup.scene.layout, self.recovered, self.states)]
+        found = coupling_loads(self.setup.scene.layout, self.recovered, self.states)
+        return [own.plus(more).rubbing(self.applied) for own in found]
 
     @cached_property
     def loads(self) -> list[AppliedLoad]:
@@ -175,7 +176,7 @@ class Recovery:
     def shares(self) -> Shares:
         """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
         from heuncli.kinetostatics.flanks import with_flanks
-        from heuncli.kinetostatics.shares import members_of, shares_of  # few runs ask for them
+        from heuncli.kinetostatics.shares import alone, members_of, shares_of  # few runs ask for them
 
         layout = self.setup.scene.layout
         own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
@@ -184,7 +185,8 @@ class Recovery:
         if self.decided is None:
             return found
         joints, more = self.decided.chosen(found.joints, self.states)
-        couplings = [own.plus(more) for own in found.couplings]
+        rubs = [alone(found, action) for action in found.applied]
+        couplings = [own.plus(more).rubbing(rubs) for own in found.couplings]
         return replace(found, joints=with_flanks(layout, joints, couplings), couplings=couplings)
 
     @property
@@ -262,7 +264,7 @@ def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Seen
     if setup.scene.mechanism.rubbing and found.decided is not None:
         from heuncli.redundancy.rubbing import require_certain  # few scenes need it
 
-        require_certain(setup.scene.mechanism, found.decided.searched, found.states, recovered.times)
+        require_certain(setup.scene.layout, found.decided.searched, found.states, recovered.times)
     return found
 
 

@@ -74,6 +74,7 @@ def compose(
             *beside_singular_poses(own.unknown),
             *of_wheels(setup, history, own.shown, struck),
             *of_belts(setup, recovery, own.shown, struck),
+            *of_threads(setup, struck),
             *(rest.warnings if rest is not None else ()),
         ),
     )
@@ -109,6 +110,15 @@ def of_wheels(setup: Setup, history: History, shown: Block, struck: Impulses | N
 
     alone = at_the_instant(setup.spec, shown.get("couplings", {})) if history.checked is None else ()
     return (*alone, *(in_blows(setup.spec, struck) if struck is not None else ()))
+
+
+def of_threads(setup: Setup, struck: Impulses | None) -> tuple[str, ...]:
+    """Warnings of threads through which blows go."""
+    if struck is None or not any(own.type == "screw" for own in setup.spec.couplings.values()):
+        return ()
+    from heuncli.study.compose.rubbing_threads import in_blows  # few scenes have them
+
+    return tuple(in_blows(setup.spec, struck))
 
 
 def of_belts(setup: Setup, recovery: Recovery, shown: Block, struck: Impulses | None) -> tuple[str, ...]:

@@ -11,7 +11,7 @@ from heuncli import tolerances
 from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
 from heuncli.integration.run.runner import Runner
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import BushingLoad, Mechanism
+from heuncli.mechanism.model import BushingLoad, Mechanism, ThreadLoad
 from heuncli.reduction.model import Reduced
 from heuncli.redundancy.count import Redundancy
 from heuncli.results import Block, Mask
@@ -120,6 +120,10 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings if own.stretched is None]
     if coupled:
         sentences.append(f"coupled: {some(coupled)}")
+    if any(isinstance(load, ThreadLoad) for load in mechanism.loads):
+        from heuncli.study.model.thread_note import of_threads  # few scenes have them
+
+        sentences += of_threads(mechanism)
     driven = [mechanism.owner(law.owner).partition(".")[2] for law in mechanism.laws]
     if driven:
         sentences.append(f"driven: {some(driven)}")

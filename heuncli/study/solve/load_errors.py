@@ -130,7 +130,9 @@ class LoadErrors:
             joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
-            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupled, terms)
+            belts = [own for own in applied if own.name in {x.coupling.name for x in couplings}]  # their pretension
+            told = [in_axes(load, states, self.setup.asked.axes) for load in joints]
+            self.add_joints(told, [*coupled, *belts], terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
