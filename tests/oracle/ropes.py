@@ -69,7 +69,7 @@ def strands(stays: Sequence[Stay], state: State) -> list[Strand]:
         if not (one.signed or other.signed):
             found.append(Strand(one.at.body, C, other.at.body, C + u, unit(u)))
             continue
-        assert abs(float(n @ u)) < 1e-7
+        assert abs(float(n @ u)) < 1e-5
         far = float(np.linalg.norm(u))
         t = about(unit(n), math.asin((one.signed - other.signed) / far)) @ u / far
         w = cross(t, n)
