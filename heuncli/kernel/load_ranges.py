@@ -16,13 +16,14 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import norm
+    from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.libm import INFINITY
     from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
     from heuncli.kernel.programs import Bounds, Span
     from heuncli.kernel.rope_ranges import bounds_of_rope
     from heuncli.kernel.ropes import motion_of_rope
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, ROPE, Load, Scene, Variable
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
     from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
@@ -60,6 +61,9 @@ def range_of_load(
     """The range of such a variable; or of its rate, and of the rate of that, beside its value."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+    if variable.part == DRAWN:
+        drawn: Span = enclose(scene.programs, load.y)  # in time alone
+        return Span(value, drawn.second, anything()) if rates else Span(drawn.rate, anything(), anything())
     of: LengthBounds = bounds_of_load(scene, points, load, i, T)
     second: Bounds = anything()
     if of.second < INFINITY:

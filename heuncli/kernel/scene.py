@@ -19,7 +19,7 @@ FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
 BUSHING_SHIFT, BUSHING_TURN, ROPE = range(12, 15)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
-ALONG_LINE = 3  # of a load: its length; before that the components of its strain
+ALONG_LINE, DRAWN = range(3, 5)  # of a load: its length, and of that without load the rate; before, the strain's parts
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
@@ -288,14 +288,14 @@ class Counter(Record):
 class Variable(Record):
     """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
 
-    Of a load (OF_LOAD) the length of its line, the rate of that, or a component of its strain.
+    Of a load (OF_LOAD) the length of its line, or the rate of that, or of a rope without load; or a part of its strain.
     """
 
     freedom: int
     is_rate: int
     is_point: int  # 0, AT_POINT, OF_LOAD
     load: int
-    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE
+    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE, DRAWN
     body: int  # of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes

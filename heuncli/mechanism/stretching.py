@@ -23,8 +23,11 @@ def rope_load(name: str, given: Rope, row: CoupledRow, length: float) -> RopeLoa
     x = combined(variable((own, "length")), free, OPS["sub"], f"stretch of rope {name}")
     pull = product(per_length(given.stiffness, length, given.law), x)
     if given.damping:
-        damped = product(per_length(given.damping, length, given.law), variable((own, "speed")))
-        pull = total(pull, damped)
+        rate = variable((own, "speed"))
+        if given.law is not None:
+            strained = combined(variable((own, "length")), given.law, OPS["div"], "1 + strain")
+            rate = combined(rate, product(strained, variable((own, "drawn"))), OPS["sub"], "rate of the stretch")
+        pull = total(pull, product(per_length(given.damping, length, given.law), rate))
     if given.tension_only:
         pull = above(pull, 0.0)
         if given.damping:

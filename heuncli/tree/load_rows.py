@@ -318,6 +318,8 @@ def load_row(row: int, quantity: str) -> VariableRow:
     """The variable that is a part of what a load acts between; row: the first of its rows."""
     if quantity in ("length", "speed"):
         return VariableRow(is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE)
+    if quantity == "drawn":
+        return VariableRow(is_point=kernel.OF_LOAD, load=row, part=kernel.DRAWN)
     of, _, axis = quantity.partition("_")
     return VariableRow(is_point=kernel.OF_LOAD, load=row + int(of == "turn"), part="xyz".index(axis))
 

@@ -210,9 +210,6 @@ def stretching(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
         )
     if rope.damping is not None and rope.damping < 0.0:
         yield Violation((*path, "damping"), f"damping {rope.damping:g} N·s/m is below 0", "0, or how much it takes")
-    if rope.damping and rope.length is not None and rope.length.constant is None:
-        message = "damping of a rope whose length is told in time"
-        yield Violation((*path, "damping"), message, "leave out the damping; or a number for the length")
     if rope.restitution is not None:
         message = "restitution of a rope that stretches, and so is not struck"
         yield Violation((*path, "restitution"), message, "tension_only: true alone lets it go slack and catch")
