@@ -36,12 +36,16 @@ class Turn(NamedTuple):
 
     dots: pairs of directions d of `from` and e of `to` that stay perpendicular, a closure row each, with the moment
     e × d; turns: the axes about which it is free, where it is not free altogether (`ball`).
+    sum_of_dots: one closure row more: the sum of such products, each so many times, stays zero, with e a direction of
+    `from` as the bend at the start turned it. As no axes in a row leave the turns that it leaves, the tree has a ball
+    there, and the row beside it.
     """
 
-    asks: Literal["free", "axis", "square", "all"]
+    asks: Literal["free", "axis", "square", "alike", "all"]
     dots: tuple[tuple[Direction, Direction], ...]
     turns: tuple[Direction, ...] = ()
     ball: bool = False
+    sum_of_dots: tuple[tuple[float, Direction, Direction], ...] = ()
 
 
 POINT = Hold("point", ("first", "second", "axis"))
@@ -56,6 +60,7 @@ PLANE_IN_PLANE = Hold("plane", ("axis", "z"), ("across",))
 FREE = Turn("free", (), ball=True)
 ABOUT_AXIS = Turn("axis", (("axis", "first"), ("axis", "second")), ("axis",))
 ABOUT_TWO = Turn("square", (("axis", "to_axis"),), ("axis", "to_axis"))
+ALIKE = Turn("alike", (), sum_of_dots=((-0.5, "first", "second"), (0.5, "second", "first")))  # by the bend alone
 NOT_AT_ALL = Turn("all", (("first", "second"), ("second", "axis"), ("axis", "first")))
 ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as drawn: in the plane nothing tilts it
 
@@ -64,10 +69,11 @@ ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as d
 HELD_ALONG = {
     POINT: Hold("point", ("first", "second")), LINE: Hold("point", ("first", "second")),
     PLANE: Hold("plane", (), ("first", "second")), DISTANCE: DISTANCE,
+    CURVE: Hold("curve", ("across",), ("axis",)), CURVE_IN_PLANE: Hold("curve", ("across",), ("axis",)),
 }  # fmt: skip
 TURNS_ALONG = {
     FREE: Turn("free", (), ("z",)), ABOUT_AXIS: Turn("axis", (), ("axis",)), ABOUT_TWO: Turn("axis", (), ("axis",)),
-    NOT_AT_ALL: Turn("all", (("first", "second"),)),
+    NOT_AT_ALL: Turn("all", (("first", "second"),)), ABOUT_Z: Turn("free", (), ("z",)),
 }  # fmt: skip
 HELD_ACROSS = {
     POINT: Hold("point", ("axis", "across")), LINE: Hold("line", ("across",), ("axis",)),
@@ -133,6 +139,16 @@ class Kind(NamedTuple):
         return self.turn.ball
 
     @property
+    def turns_alike(self) -> bool:
+        """Whether it leaves the bend of its two axes free, and neither turns about its own beside the other."""
+        return bool(self.turn.sum_of_dots)
+
+    @property
+    def ball_in_tree(self) -> bool:
+        """Whether the tree leaves all three turns free, whatever closure rows hold of them."""
+        return self.ball or self.turns_alike
+
+    @property
     def keeps_distance(self) -> bool:
         """Whether it holds the distance of its points, along whose line its force, and its drive's, acts."""
         return self.hold is DISTANCE
@@ -145,7 +161,7 @@ class Kind(NamedTuple):
     @property
     def rows(self) -> int:
         """How many scalar conditions it makes."""
-        return 1 if self.keeps_distance else len(self.guides) + len(self.dots)
+        return 1 if self.keeps_distance else len(self.guides) + len(self.dots) + self.turns_alike
 
     @property
     def is_rigid(self) -> bool:
@@ -165,7 +181,7 @@ class Kind(NamedTuple):
     @property
     def has_one_axis(self) -> bool:
         """Whether its loads act about or along its axis, and not on the whole motion: about two, or in a plane."""
-        return self.axis_key == "axis" and self.to_axis != "required"
+        return self.axis_key == "axis" and self.to_axis != "required" and not self.turns_alike
 
     @property
     def wanders(self) -> bool:
@@ -213,6 +229,10 @@ TYPES: dict[str, Kind] = {
             motions=("turning",), looser=("ball",), synonyms=("cardan", "hooke", "u"),
         ),
         Kind(
+            "cv", POINT, ALIKE, axis_key="axis", to_axis="optional", loads=("damper",), motions=("turning",),
+            looser=("ball",), synonyms=("constant_velocity", "constantvelocity", "homokinetic", "rzeppa"),
+        ),
+        Kind(
             "weld", POINT, NOT_AT_ALL, planar="weld", looser=("ball",), looser_in_plane=("pin",),
             synonyms=("fixed", "rigid", "lock"),
         ),
@@ -250,7 +270,7 @@ JOINTS: dict[str, Kind] = TYPES | {
 FLAT: dict[tuple[str, bool], Kind] = {
     (kind.name, along): kind._replace(
         name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],
-        coordinates=tuple(x for x in kind.coordinates if x == ("angle" if along else "travel")),
+        coordinates=tuple(x for x in kind.coordinates if kind.follows_path or x == ("angle" if along else "travel")),
         spoken=kind.spoken or kind.name,
     )
     for kind in JOINTS.values()

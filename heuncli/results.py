@@ -95,6 +95,7 @@ class JointBlock(TypedDict, total=False):
     radial: Array
     tilting: Array
     tension: Array
+    torque: Array
     pressure: Array
     contact_point: Array
     shares: Block

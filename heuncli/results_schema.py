@@ -183,8 +183,9 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
     *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
+    *at("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
     *shares("joints.JOINT", vector("force", "N"), vector("moment", "N·m"), scalar("drive", "N | N·m"),
-        scalar("tension", "N")),
+        scalar("tension", "N"), scalar("torque", "N·m")),
     *at("stops.STOP", "of the stop ON `to`, along or about the coordinate that it limits; 0 where it is free",
         scalar("force", "N"), scalar("moment", "N·m")),
     *at("couplings.COUPLING", "the load that the coupling carries; `contact`: of a cam along the normal of its flank, "
@@ -197,8 +198,7 @@ ROWS: tuple[Quantity, ...] = (
         scalar("radial", "N"), scalar("axial", "N")),
     *at("couplings.COUPLING", "of a screw with friction, the power that comes out by the power that goes in; 0 where "
         "none comes out", scalar("efficiency", "1")),
-    *at("couplings.COUPLING", "of a screw, about its axis; of a constant-velocity joint ON `to`, about either shaft",
-        scalar("torque", "N·m")),
+    *at("couplings.COUPLING", "of a screw, about its axis", scalar("torque", "N·m")),
     *at("couplings.COUPLING", "of a rope; where sheaves hold it, behind the first of them another one: the last",
         scalar("tension", "N"), scalar("last_tension", "N")),
     *at("couplings.COUPLING", "of a belt, the pulls of its strands; below zero one would have to push",
@@ -314,8 +314,15 @@ ESTIMATES = {
     "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 # of which estimate those errors are that have none of their own
-KIND_OF = {"forces": "reactions", "axis": "foundation", "attitudes": "motion", "rodrigues": "motion"}
+KIND_OF = {
+    "forces": "reactions",
+    "axis": "foundation",
+    "attitudes": "motion",
+    "rodrigues": "motion",
+    "strains": "motion",
+}
 ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
+OF_A_LOAD = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
@@ -432,7 +439,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
+        return OF_A_LOAD.get(number, "forces")
     if number.startswith("energy_"):
         return "energy"
     if kind == "bodies" and number in ATTITUDES:

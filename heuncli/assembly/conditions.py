@@ -24,7 +24,7 @@ from heuncli.shapes.rotations import about, perpendicular, turn_onto
 from heuncli.spec.models import Drive
 
 Hold = Literal["none", "point", "line", "plane", "distance", "curve"]
-Turn = Literal["free", "axis", "square", "all"]
+Turn = Literal["free", "axis", "square", "alike", "all"]
 
 SAME_AXES = np.eye(3)
 NO_BEND = np.zeros(3)

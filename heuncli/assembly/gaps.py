@@ -68,7 +68,7 @@ def _distance(ask: Ask, D: Array, n: Array, length: Array) -> Array:
 
 
 def _angle(ask: Ask, Ra: Array, Rb: Array, c: dict[str, Array]) -> Array:
-    if ask.turn == "free":
+    if ask.turn in ("free", "alike"):
         return np.zeros(Ra.shape[:-2])
     if ask.turn == "all":
         # sin from the skew part, cos from the trace: exact near zero and near half a turn

@@ -18,11 +18,10 @@ from heuncli import tolerances
 from heuncli.assembly.conditions import Ask, JointCondition, on_tangent
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross, hat, to_vector
+from heuncli.shapes.rotations import cross, inverse_jacobian, to_vector
 
 NOTHING = np.zeros((0, 3))
 NONE = np.zeros(0)
-SERIES = 1e-4  # [rad] below it the first term of a series is exact and the closed form cancels
 NEARLY_OPPOSITE = -0.99  # cosine: beyond, the turn's own bend would outweigh what closes it
 
 
@@ -70,22 +69,13 @@ def _turn_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     """T and minus the gap: the vector of the smallest turn that is missing, so opposite axes are far from closed."""
     if d.pose.turn == "all":
         phi = to_vector(Ra.T @ Rb @ d.relative.T)
-        return _inverse_jacobian(phi) @ Ra.T, -phi
+        return inverse_jacobian(phi) @ Ra.T, -phi
     if d.pose.turn == "axis":
         return _axis_gap(d, Ra, Rb)
     if d.pose.turn == "square":
         n, m = Ra @ d.axis, Rb @ d.to_axis
         return cross(m, n)[None, :], np.array([-(n @ m)])
     return NOTHING, NONE
-
-
-def _inverse_jacobian(phi: Array) -> Array:
-    """d phi = this @ w dt, for exp(phi) turned on by w (fixed axes), (3, 3)."""
-    angle2 = float(phi @ phi)
-    angle = math.sqrt(angle2)
-    factor = 1.0 / 12.0 if angle < SERIES else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
-    V = hat(phi)
-    return np.eye(3) - 0.5 * V + factor * (V @ V)
 
 
 def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
@@ -110,13 +100,19 @@ def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
 
 
 def _turned(d: JointCondition, Ra: Array, Rb: Array) -> Array:
-    """T of the rates, in a pose that is closed: unit rows, perpendicular to each other."""
+    """T of the rates, in a pose that is closed: unit rows, perpendicular to each other.
+
+    Two axes turn alike where the one body turns against the other about no line but such as halve their bend.
+    """
     if d.rate.turn == "all":
         return Ra.T
     if d.rate.turn == "axis":
         return d.across @ Ra.T
     if d.rate.turn == "square":
         m = cross(Rb @ d.to_axis, Ra @ d.axis)
+        return (m / math.sqrt(float(m @ m)))[None, :]
+    if d.rate.turn == "alike":
+        m = Ra @ d.axis + Rb @ d.to_axis
         return (m / math.sqrt(float(m @ m)))[None, :]
     return NOTHING
 
@@ -168,6 +164,9 @@ def acceleration_rows(d: JointCondition, row: Rows, x: Array, R: Array, v: Array
     if d.rate.turn == "square":
         n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
         turn = turn - (wb - wa) @ (cross(cross(wb, m), n) + cross(m, cross(wa, n)))
+    elif d.rate.turn == "alike":
+        n, m = R[d.a] @ d.axis, R[d.b] @ d.to_axis
+        turn = turn - (wb - wa) @ (cross(wa, n) + cross(wb, m)) / math.sqrt(float((n + m) @ (n + m)))
     elif len(row.T):
         turn = turn + row.T @ cross(wa, wb)
     return Rows(row.F, row.T, hold, turn, row.r_a, row.r_b)

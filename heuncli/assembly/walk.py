@@ -143,7 +143,7 @@ def place(poses: AssemblyPoses, d: JointCondition, body: int) -> None:
     """Turn and shift the body at one end of a joint so that it fits the body at the other, as far as it may."""
     R, x = poses.R, poses.x
     is_to = body == d.b
-    if poses.turns[body] and d.pose.turn != "free":
+    if poses.turns[body] and d.pose.turn not in ("free", "alike"):
         poses.turn(body, asked_attitude(d, R[d.a], R[d.b], is_to))
     if poses.shifts[body]:
         D = (x[d.b] + R[d.b] @ d.q) - (x[d.a] + R[d.a] @ d.p)

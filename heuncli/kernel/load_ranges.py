@@ -4,7 +4,11 @@ V, A: of the speeds and accelerations of a load's two points together; Omega, Al
 
     |l - chord| <= (A + V^2 / l) T^2 / 8,  |l'| <= V
     |d - chord| <= (A + (Alpha + Omega^2) L + 2 Omega V) T^2 / 8,  |d'| <= V + Omega L
-    |phi - nearer end| <= pi/2 (Omega_a + Omega_b) T / 2         for |J^-1| = (theta/2) / sin (theta/2) <= pi/2
+    |phi - chord| <= (pi/2 (Alpha_a + Alpha_b + Omega_a Omega_b) + K pi/2 (Omega_a + Omega_b)^2) T^2 / 8
+    |phi'| <= pi/2 (Omega_a + Omega_b)
+phi: a rotation vector of less than half a turn, phi' = J^-1 omega, omega = R_a' (omega_b - omega_a). There
+|J^-1| = (theta/2) / sin (theta/2) <= pi/2. Of J^-1 = 1 - [phi]/2 + f (n n' - 1), f = 1 - (theta/2) cot (theta/2), the
+change along a unit step of phi is not above 1/2 + f' + 2 f / theta, which is 1/2 + pi/4 + 2/pi < K at half a turn.
 """
 
 from __future__ import annotations
@@ -30,6 +34,7 @@ if not cython.compiled:
     from heuncli.kernel.values import LengthBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966
+STEEPEST = 1.93  # K
 
 
 def load_at_end(
@@ -110,9 +115,13 @@ def bounds_of_load(
         L: cython.double = points.last_rate[i] + V * T
         spin: cython.double = spin_of(points, load.a)
         A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
-        return LengthBounds(V + spin * L, INFINITY, 0.125 * A * T * T, far, rounding)
-    turning: cython.double = QUARTER_TURN * (spin_of(points, load.a) + spin_of(points, load.b))
-    return LengthBounds(turning, INFINITY, 0.5 * turning * T, 8.0, rounding)
+        return LengthBounds(V + spin * L, A, 0.125 * A * T * T, far, rounding)
+    spin_a: cython.double = spin_of(points, load.a)
+    spin_b: cython.double = spin_of(points, load.b)
+    turning: cython.double = QUARTER_TURN * (spin_a + spin_b)
+    A = QUARTER_TURN * (twist_of(points, load.a) + twist_of(points, load.b) + spin_a * spin_b)
+    A = A + STEEPEST * turning * (spin_a + spin_b)
+    return LengthBounds(turning, A, 0.125 * A * T * T, 8.0, rounding)
 
 
 def between(a: cython.double, b: cython.double, beyond: cython.double) -> Bounds:

@@ -23,6 +23,7 @@ ALONG_LINE, DRAWN = range(3, 5)  # of a load: its length, and of that without lo
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
+TRACK, ALONG = range(10, 12)  # of paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
     5
@@ -172,6 +173,7 @@ class Closure(Record):
     STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
     b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
     runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
+    TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length.
     """
 
     kind: int
@@ -201,14 +203,15 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
-    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
     pieces: int
     period: float
     swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
-    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
     radius: float  # of the roller; 0: a point
     pivot: Vec3
     h: Vec3
+    counter: int  # of a TRACK: which counter counts its place
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -275,14 +278,15 @@ class PathPiece(Record):
 
 
 class Counter(Record):
-    """The angle of a pin that was cut, counted on over many turns as a state of its own."""
+    """The angle of a pin that was cut, counted on over many turns as a state of its own; or a place on a path."""
 
     a: int
     b: int
     at: int  # where it stands in the state
     axis: Vec3  # in a
+    track: int  # of a place: 1 + its TRACK among the closure rows; 0: an angle
 
-    counted: float  # the state's angle, which is right to half a turn
+    counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
 
 class Variable(Record):

@@ -160,6 +160,23 @@ class CamContact(Value):
     n: Vec3
 
 
+class TrackFrame(Value):
+    """A direction across a path, and what it changes by along it."""
+
+    N: Vec3
+    change: Vec3
+
+
+class PlaceTangent(Value):
+    """What the place s of a path beside a point changes by: s itself, r', r'', and |r'|^2 - r'' . (D - r)."""
+
+    s: float
+    slope: Vec3
+    bend: Vec3
+    square: float  # that itself
+    squared: float  # and its change
+
+
 class MotionTangent(Value):
     """What velocity and acceleration of a place that a body carries change by."""
 

@@ -99,12 +99,6 @@ def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
     return found
 
 
-def of_constant_velocity(loads: CouplingLoads) -> list[CoupledNumber]:
-    """The torque ON `to` about either shaft, cos(b/2) of the couple at a bend b; for a multiplier of 1 m = cos(b/2)."""
-    m = np.sum([part.m for part in loads.parts], axis=0)
-    return [CoupledNumber("torque", loads.multipliers[0] * np.sum(m * m, axis=-1), (0,), is_moment=True, linear=True)]
-
-
 def of_screw(loads: CouplingLoads) -> list[CoupledNumber]:
     """Its thrust; with friction all of it, and the torque that this takes."""
     if loads.friction is None:
@@ -119,5 +113,5 @@ def of_screw(loads: CouplingLoads) -> list[CoupledNumber]:
 
 
 NUMBERS: dict[str, Callable[[CouplingLoads], list[CoupledNumber]]] = {
-    "wheel": of_wheel, "rope": of_rope, "cv": of_constant_velocity, "screw": of_screw,
+    "wheel": of_wheel, "rope": of_rope, "screw": of_screw,
 }  # fmt: skip

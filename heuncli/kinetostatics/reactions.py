@@ -1,7 +1,7 @@
 """Joint reactions: force and moment of each joint's constraint, ON `to` by `from`, about the `to` point.
 
 For a joint of the tree they follow from the balance of the branch beyond it; for a cut joint from its multipliers,
-sum of lambda (f, m).
+sum of lambda (f, m), and of one whose shafts turn alike its moment, wherever it is.
 Components along free directions are zero by definition of the joint. The rounding that the sweep leaves there is not
 hidden: it enters the balance residual of the bodies.
 
@@ -113,6 +113,13 @@ class JointLoads:
         return self.points.positions[self.number]
 
     @property
+    def torque(self) -> Array | None:
+        """Of shafts that turn alike what `to` gets about either of them, (..., n_t); None of other joints."""
+        if not JOINTS[self.joint.kind].turns_alike or self.axis is None:
+            return None
+        return np.asarray(np.sum(self.moment * self.axis, axis=-1))
+
+    @property
     def drive_force(self) -> Array:
         """The drive's force ON `to` beside `force`, (n_t, 3)."""
         along = self.drive is not None and self.joint.drive is not None and self.joint.drive.quantity == "travel"
@@ -191,6 +198,8 @@ def joint_loads(
             if h.reverse:
                 arm = states.point_position(joint.a, joint.p) - points.positions[len(loads)]
                 force, moment = -force, -moment - cross_rows(arm, force)
+            if kind.turns_alike:  # the tree has a ball there, and all the moment is the row's
+                moment = _of_joint(layout, k, recovered.rows, "m")
             if k in driven:
                 drive = recovered.freedoms["drive"][..., driven[k]]
                 if kind.follows_path:  # the kernel's is that of the coordinate, which counts r' along the path
@@ -230,7 +239,13 @@ def stop_loads(layout: Layout, joint: int, rows: Named) -> tuple[StopLoad, ...]:
         own = [contact.row for contact in layout.contacts if contact.name == stop.name and not contact.is_rope]
         units = np.concatenate([rows["f"][..., own, :], rows["m"][..., own, :]], axis=-1)
         unit = np.max(rows["closed"][..., own, None], axis=-2) * units[..., 0, :]  # of both limits it is the same
-        found.append(StopLoad(stop, rows["multiplier"][..., own].sum(axis=-1), unit))
+        values = rows["multiplier"][..., own]
+        if (
+            layout.mechanism.joints[joint].path is not None
+        ):  # a unit of the row is of the coordinate, whatever it counts
+            sizes = np.sqrt(np.sum(units * units, axis=-1))
+            values, unit = values * sizes, unit / sizes[..., :1]
+        found.append(StopLoad(stop, values.sum(axis=-1), unit))
     return tuple(found)
 
 
@@ -269,6 +284,9 @@ def constrained_part(joint: Joint, states: BodyStates, force: Array, moment: Arr
         n = cross_rows(states.direction(joint.a, joint.axis), states.direction(joint.b, joint.to_axis))
         n = n / np.sqrt(np.sum(n * n, axis=1))[:, None]
         moment = np.sum(moment * n, axis=-1)[..., None] * n
+    elif kind.turns_alike:
+        n = states.direction(joint.a, joint.axis) + states.direction(joint.b, joint.to_axis)
+        moment = np.sum(moment * n, axis=-1)[..., None] * n / np.sum(n * n, axis=1)[:, None]
     elif kind.turns:
         n = states.direction(joint.a, joint_frame(joint, kind.turns[0]))
         moment = moment - np.sum(moment * n, axis=-1)[..., None] * n

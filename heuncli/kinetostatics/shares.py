@@ -147,6 +147,7 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
 def joint_shares(shares: Shares, load: JointLoads) -> Block:
     """The shares in one joint's load, cause by cause."""
     parts = {"force": load.force, "moment": load.moment, "drive": load.drive, "tension": load.tension}
+    parts["torque"] = load.torque
     return shares.by_name({name: values for name, values in parts.items() if values is not None})
 
 

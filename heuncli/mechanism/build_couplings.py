@@ -154,12 +154,12 @@ def wheel(given: c.RollingWheel, drawn: CoupledDrawing) -> tuple[CoupledRow, ...
     return disc_rows(ends, unit(given.axis), given.radius, ways)
 
 
-def at_start(given: c.Rope | c.ConstantVelocity, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
+def at_start(given: c.Rope, drawn: CoupledDrawing) -> tuple[CoupledRow, ...]:
     """None yet: what they hold is found where the bodies stand (tree/couplings_at_start.py)."""
     return ()
 
 
 MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {
     "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam,
-    "wheel": wheel, "rope": at_start, "cv": at_start,
+    "wheel": wheel, "rope": at_start,
 }  # fmt: skip

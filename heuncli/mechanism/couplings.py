@@ -162,7 +162,12 @@ class Coupling:
     @property
     def bodies(self) -> frozenset[int]:
         """All bodies that it looks at, without the ground."""
-        return frozenset(i for row in self.carriers for part in row.parts for i in part.bodies if i != GROUND)
+        return self.ends - {GROUND}
+
+    @property
+    def ends(self) -> frozenset[int]:
+        """The same, with the ground where it looks at that."""
+        return frozenset(i for row in self.carriers for part in row.parts for i in part.bodies)
 
     @property
     def law(self) -> Expression | None:

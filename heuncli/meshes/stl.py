@@ -19,6 +19,7 @@ from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused
 from heuncli.results import Array
 
 HEAD, FACET = 84, 50  # bytes
+SPACE, CASE = 0x20, 0x20  # the last of what stands between words; what makes a letter a small one
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 SOLID = re.compile(rb"^[ \t]*(?:end)?solid\b[^\r\n]*", re.MULTILINE | re.IGNORECASE)
 # the tokens of a facet; None: a number
@@ -26,10 +27,6 @@ FORM = (
     b"facet", b"normal", None, None, None, b"outer", b"loop", *((b"vertex", None, None, None) * 3),
     b"endloop", b"endfacet",
 )  # fmt: skip
-
-NUMBERS = b"0123456789+-.eE \t\r\n"
-LETTERS = b"".join(word for word in FORM if word).translate(None, NUMBERS)  # what of a facet is left without them
-MARKS = ((b"endfacet", b""), (b"endloop", b""), (b"outer loop", b""), (b"facet normal", b"nan"), (b"vertex", b"nan"))
 
 
 def read_stl(content: bytes) -> Soup:
@@ -54,34 +51,38 @@ def _soup(places: Array) -> Soup:
 def _as_text(content: bytes) -> Array:
     """The corners (m, 3, 3) of a file that is text; of several solids all."""
     begin, end = content.find(b"\n"), content.rfind(b"endsolid")
-    places = _of_columns(content[begin:end]) if 0 <= begin < end else None
+    is_last = not content[end:].partition(b"\n")[2].strip()
+    body = content[begin:end] if 0 <= begin < end and is_last else b""
+    if b"endsolid" in body:
+        body = SOLID.sub(b" ", body)
+    places = _at_once(body)
     return _of_words(SOLID.sub(b" ", content).split()) if places is None else places
 
 
-def _of_columns(text: bytes) -> Array | None:
-    """The corners by the numbers of the file all at once; None where it is not written as is usual.
-
-    A mark that is no number stands for each of the words with numbers behind them: so many between the marks they are.
-    """
-    letters = text.translate(None, NUMBERS)
-    count = len(letters) // len(LETTERS)
-    if not count or letters.lower() != LETTERS * count:
+def _at_once(body: bytes) -> Array | None:
+    """The corners by all words at their places, and all numbers in one go; None where it is not written as is usual."""
+    text = np.frombuffer(body, np.uint8).copy()
+    seen = text > SPACE
+    begins = np.flatnonzero(seen[1:] & ~seen[:-1]) + 1
+    if not len(begins) or len(begins) % len(FORM) or seen[0]:
         return None
-    if b"facet" not in text[: text.find(b"vertex")]:
-        return None
-    for word, mark in MARKS:
-        text = text.replace(word, mark)
+    facets = begins.reshape(-1, len(FORM))
+    for k, word in enumerate(FORM):
+        if word is None:
+            continue
+        at = facets[:, k, None] + np.arange(len(word))
+        if at[-1, -1] >= len(text) or not ((text[at] | CASE) == np.frombuffer(word, np.uint8)).all():
+            return None
+        text[at] = SPACE
     with warnings.catch_warnings():
         warnings.simplefilter("error", DeprecationWarning)
         try:
-            numbers = np.fromstring(text, sep=" ")
+            numbers = np.fromstring(text.tobytes(), sep=" ")
         except (DeprecationWarning, ValueError):
             return None
-    if len(numbers) != 16 * count:
+    if len(numbers) != 12 * len(facets):
         return None
-    rows = numbers.reshape(count, 4, 4)
-    fits = np.isnan(rows[:, :, 0]).all() and np.isfinite(rows[:, 1:, 1:]).all()
-    return np.ascontiguousarray(rows[:, 1:, 1:]) if fits else None
+    return np.ascontiguousarray(numbers.reshape(-1, 4, 3)[:, 1:])
 
 
 def _of_words(words: list[bytes]) -> Array:

@@ -58,6 +58,13 @@ const AT_POINT = {
     polyline(pen, [place(-R), place(R)], colours.ink, 1.5);
     polyline(pen, [place(0, -R), place(0, R)], colours.ink, 1.5);
   },
+  cv: (pen, at, along, colours) => {
+    ring(pen, ...at, R, colours.paper, colours.ink, 1.8);
+    const place = placer(at, [1, 0]);
+    for (const [x, y] of [[0, -R], [0.87 * R, 0.5 * R], [-0.87 * R, 0.5 * R]]) {
+      polyline(pen, [at, place(x, y)], colours.ink, 1.5);
+    }
+  },
   weld: (pen, at, along, colours) => {
     const place = placer(at, [1, 0]);
     shape(pen, [place(-5, -5), place(5, -5), place(5, 5), place(-5, 5)], colours.ink, colours.paper, 1);
@@ -134,10 +141,9 @@ export function drawJoint(pen, view, poses, joint, colours, small) {
     if (grounded) standing(pen, view, at, colours);
     AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);
   } else if (joint.kind in SLIDING) {
-    polyline(pen, [from, at], colours.faint, 1, [5, 4]);
     SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
   } else if (joint.kind === "curve") {
-    ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8); // its path is drawn as a line
+    ring(pen, at[0], at[1], DOT, colours.paper, colours.ink, 1.4); // its path is drawn as a line
   } else {
     drawRod(pen, joint, from, at, colours);
   }
@@ -186,10 +192,10 @@ export function drawLine(pen, view, poses, line, colours) {
   for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
 }
 
-/** A strand of a belt, or a path along which a point runs: a line that stands on a body or the ground. */
-export function drawStrand(pen, view, poses, { body, line }, colours) {
+/** A line on the ground: a path along which a point runs, the circle of a ring. */
+export function drawPath(pen, view, path, colours) {
   const ends = [];
-  for (let i = 0; i < line.length; i += 3) ends.push(view.project(stands(poses, body, line.subarray(i, i + 3))));
+  for (let i = 0; i < path.length; i += 3) ends.push(view.project(path.subarray(i, i + 3)));
   polyline(pen, ends, colours.ink, 1.5);
 }
 

@@ -70,6 +70,7 @@ def open_joint(
         parts["radial"] = np.asarray(stress.reaches(across).any(axis=1))
         tilting = stress.reaches(M - n[:, :, None] * about, stress.length)
         parts["tilting"] = np.asarray(tilting.any(axis=1))
+        parts["torque"] = stress.reaches(about, stress.length)[:, 0]
         if load.drive is not None and load.joint.drive is not None:
             parts["drive"] = open_along(load.joint.drive.quantity, free, stress)
     if load.tension is not None:

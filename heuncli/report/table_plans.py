@@ -135,7 +135,7 @@ JOINTS = TablePlan(
     "joints",
     "joints",
     "joint",
-    ("force", "moment", "axial", "radial", "tilting", "tension", "pressure", "drive"),
+    ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
     lambda results, labels: (
         f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
     ),

@@ -268,7 +268,9 @@ class RestSearch:
         recovered = replace(new.recovered, states=state[None, :])
         told = joint_coordinates(layout, recovered, body_states(layout, recovered))
         for joint, place in layout.counters.items():
-            state[place] = told[layout.mechanism.joints[joint].name]["angle"][0]
+            state[place] = told[(own := layout.mechanism.joints[joint]).name][
+                "angle" if own.path is None else "travel"
+            ][0]
         return replace(new, state=state, recovered=replace(recovered, states=state[None, :]))
 
     def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:

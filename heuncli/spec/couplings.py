@@ -212,20 +212,6 @@ class Rope(NamedTuple):
         return frozenset(x.end.body for x in self.through if x.grips)
 
 
-class ConstantVelocity(NamedTuple):
-    """What makes of a ball a constant-velocity joint: shafts along axis in `from`, to_axis in `to`, turn alike."""
-
-    joint: str
-    axis: tuple[float, float, float]
-    to_axis: tuple[float, float, float]
-    type: Literal["cv"] = "cv"
-
-    @property
-    def joints(self) -> tuple[str, ...]:
-        """The ball."""
-        return (self.joint,)
-
-
 Coupling = (  # a union of the classes here
-    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope | ConstantVelocity
+    Ratio | Gear | Screw | Belt | Differential | Cam | RollingWheel | Rope
 )

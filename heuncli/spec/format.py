@@ -223,6 +223,12 @@ class UniversalJoint(AnyJoint):
     to_axis: Direction
 
 
+class ConstantVelocityJoint(AnyJoint):
+    type: Literal["cv"]
+    axis: Direction
+    to_axis: Direction | None = None
+
+
 class WeldJoint(AnyJoint):
     type: Literal["weld"]
 
@@ -244,6 +250,8 @@ class CurveJoint(Bearing):
     z: PathPart = 0.0
     radius: Length | None = None
     normal: Direction | None = None
+    one_sided: Switch = False
+    restitution: Number | None = None
     initial: Sliding | None = None
 
 
@@ -255,23 +263,16 @@ class RodJoint(AnyJoint):
 
 
 JointEntry = (
-    BallJoint
-    | PinJoint
-    | SlideJoint
-    | CylinderJoint
-    | UniversalJoint
-    | WeldJoint
-    | LineJoint
-    | PlaneJoint
-    | RodJoint
-    | CurveJoint
-)
+    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | ConstantVelocityJoint | WeldJoint | LineJoint
+    | PlaneJoint | CurveJoint | RodJoint
+)  # fmt: skip
 JOINTS: dict[str, type[JointEntry]] = {
     "ball": BallJoint,
     "pin": PinJoint,
     "slide": SlideJoint,
     "cylinder": CylinderJoint,
     "universal": UniversalJoint,
+    "cv": ConstantVelocityJoint,
     "weld": WeldJoint,
     "line": LineJoint,
     "plane": PlaneJoint,

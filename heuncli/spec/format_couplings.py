@@ -126,19 +126,8 @@ class RopeEntry(Entry):
     damping: Damping | None = None
 
 
-class ConstantVelocityEntry(Entry):
-    """What makes of a ball a constant-velocity joint."""
-
-    type: Literal["cv"]
-    joint: str
-    axis: Direction
-    to_axis: Direction | None = None
-
-
-CouplingEntry = (
-    RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry | ConstantVelocityEntry
-)
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry
 COUPLINGS: dict[str, type[CouplingEntry]] = {
     "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
-    "cam": CamEntry, "rope": RopeEntry, "cv": ConstantVelocityEntry,
+    "cam": CamEntry, "rope": RopeEntry,
 }  # fmt: skip

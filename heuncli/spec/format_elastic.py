@@ -10,10 +10,13 @@ from heuncli.spec.fields import (
     AnEnd,
     Damping,
     Force,
+    Inertia,
+    Mass,
     Moment,
     MotorCurve,
     Number,
     NumberInTime,
+    Rate,
     ShiftLaw,
     TurningDamping,
     TurnLaw,
@@ -21,13 +24,23 @@ from heuncli.spec.fields import (
 from heuncli.spec.format_shapes import Orientation
 
 
+class RotorEntry(Entry):
+    """What turns in a motor."""
+
+    mass: Mass
+    inertia: Inertia
+
+
 class MotorEntry(Entry):
     type: Literal["motor"]
     joint: str
-    curve: MotorCurve
+    curve: MotorCurve | None = None
+    stall: Moment | None = None
+    idle: Rate | None = None
     ratio: Number = 1.0
     limit: Moment | None = None
     value: NumberInTime | None = None
+    rotor: RotorEntry | None = None
 
 
 class ShiftLaws(Entry):

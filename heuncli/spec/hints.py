@@ -10,6 +10,7 @@ from heuncli.nearest import did_you_mean, nearest
 from heuncli.spec import format as f
 from heuncli.spec.entries import keys_of
 from heuncli.spec.words import (
+    BY_KEYS,
     ELSEWHERE,
     FORMS,
     FORMS_OF_KINDS,
@@ -68,6 +69,9 @@ def belonging(key: str, known: Collection[str]) -> str | None:
         return (
             "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
         )
+    for keys, words in BY_KEYS:
+        if key.lower() in words and set(keys) <= set(known):
+            return words[key.lower()]
     if key == "initial" and "length" in known:
         return "a rod starts as it is assembled, or with its length: ..."
     if key == "initial" and {"from", "to"} <= set(known):

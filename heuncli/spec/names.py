@@ -10,6 +10,7 @@ from heuncli.nearest import misspelt
 from heuncli.spec.entries import Entry, keys_of
 from heuncli.spec.format import BodyEntry, GroundEntry
 from heuncli.spec.models import Spec
+from heuncli.spec.motors import rotor_of
 
 GROUND = "ground"
 NAMED = (
@@ -56,7 +57,19 @@ class Names(NamedTuple):
         points = {name: points_of(body, BodyEntry) for name, body in bodies.items()}
         points[GROUND] = points_of(data.get(GROUND), GroundEntry)
         joints = {name: str(mapping(joint).get("type")) for name, joint in mapping(data.get("joints")).items()}
+        for name in rotors_in(entries["forces"]):
+            for block in ("bodies", "joints", "couplings"):
+                entries[block] = {name: {}} | entries[block]
+            joints.setdefault(name, "pin")
         return cls(entries, points, joints, {})
+
+
+def rotors_in(forces: dict[str, Any]) -> list[str]:
+    """The names of the rotors of motors, which are bodies, joints and couplings."""
+    return [
+        rotor_of(name) for name, load in forces.items()
+        if mapping(load).get("type") == "motor" and mapping(load).get("rotor") is not None
+    ]  # fmt: skip
 
 
 def names_in(spec: Spec) -> Names:

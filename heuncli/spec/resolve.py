@@ -22,6 +22,7 @@ from heuncli.spec.couplings import Coupling
 from heuncli.spec.fields import EndEntry
 from heuncli.spec.format_couplings import CouplingEntry
 from heuncli.spec.format_rolling import RollingEntry
+from heuncli.spec.motors import curve_of, rotors
 from heuncli.spec.names import GROUND, UNTIL
 from heuncli.spec.resolve_couplings import conditions_of_belts, conditions_of_wheels, meant, wheel_meant
 from heuncli.spec.semantics import (
@@ -62,6 +63,8 @@ class Meaning:
 def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) -> m.Spec:
     """The scene that a document without errors means; by: what follows the references, one of them by default."""
     r = by or Resolver(document, meaning.locations, meaning.curves, meaning.surfaces)
+    joints = r.entries("joints", "joint")
+    of_motors = rotors(document, joints, meaning.locations)
     return m.Spec(
         title=titled(document, meaning.case),
         path=meaning.path,
@@ -70,13 +73,13 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         parameters=meaning.parameters,
         gravity=document.head.gravity,
         ground=m.Ground(document.ground.points),
-        bodies=r.entries("bodies", "body"),
-        joints=r.entries("joints", "joint"),
+        bodies=r.entries("bodies", "body") | of_motors.bodies,
+        joints=joints | of_motors.joints,
         drives=r.entries("drives", "drive"),
         forces=r.entries("forces", "force"),
         impulses=r.entries("impulses", "impulse"),
         stops=r.entries("stops", "stop"),
-        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel"),
+        couplings=r.entries("couplings", "coupling") | r.entries("rolling", "wheel") | of_motors.couplings,
         latches=r.entries("latches", "latch"),
         sections=r.entries("sections", "section"),
         tables=meaning.tables,
@@ -87,7 +90,7 @@ def resolve(document: f.Document, meaning: Meaning, by: Resolver | None = None) 
         cases={name: case.title for name, case in document.cases.items()},
         case=meaning.case,
         warnings=meaning.warnings,
-        locations=meaning.locations,
+        locations={**meaning.locations, **of_motors.locations} if of_motors.locations else meaning.locations,
     )  # fmt: skip
 
 
@@ -221,6 +224,7 @@ class Resolver:
             p_name=a.name,
             q_name=b.name,
             path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
+            one_sided=getattr(joint, "one_sided", False),
         )
 
     def path(self, joint: f.CurveJoint) -> Path:
@@ -228,7 +232,9 @@ class Resolver:
         from heuncli.expressions.paths import path_beside, path_of  # with NumPy, which a spec without one needs not
 
         found = path_of((joint.x, joint.y, joint.z))
-        return found if joint.radius is None else path_beside(found, joint.radius, joint.normal or (0.0, 0.0, 1.0))
+        if joint.radius is None and not joint.one_sided:
+            return found
+        return path_beside(found, joint.radius or 0.0, joint.normal or (0.0, 0.0, 1.0))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)
@@ -281,7 +287,7 @@ class Resolver:
 
     def motor(self, load: fe.MotorEntry, path: str) -> m.Motor:
         """ratio * value * curve(ratio * rate), within the limit of the motor itself."""
-        law = with_factor(self.placed(load.curve, f"{path}.curve"), (OWN, "rate"), load.ratio)
+        law = with_factor(self.placed(curve_of(load), f"{path}.curve"), (OWN, "rate"), load.ratio)
         law = within(law, load.limit) if load.limit is not None else law
         if load.value is not None:
             law = product(self.placed(load.value, f"{path}.value"), law)

@@ -166,12 +166,6 @@ def passage(by: Following, given: f.PassageEntry) -> c.Passage:
     return c.Passage(end, given.radius or 0.0, given.axis, given.side, given.slip == "none")
 
 
-def constant_velocity(by: Following, name: str, entry: f.ConstantVelocityEntry) -> c.ConstantVelocity:
-    """Two shafts in a ball that turn alike."""
-    return c.ConstantVelocity(entry.joint, entry.axis, entry.axis if entry.to_axis is None else entry.to_axis)
-
-
 MEANINGS: dict[str, Callable[..., c.Coupling]] = {
     "ratio": ratio, "gear": gear, "screw": screw, "belt": belt, "differential": differential, "cam": cam, "rope": rope,
-    "cv": constant_velocity,
 }  # fmt: skip

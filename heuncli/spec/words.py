@@ -17,7 +17,7 @@ COUPLING_WORDS = {
     "gears": "gear", "spur": "gear", "bevel": "gear", "rack": "gear", "rackpinion": "gear", "rack_and_pinion": "gear",
     "chain": "belt", "pulley": "rope", "sheave": "rope", "hoist": "rope", "tackle": "rope", "spindle": "screw",
     "lead_screw": "screw", "leadscrew": "screw", "nut": "screw", "couple": "ratio", "mimic": "ratio", "linear": "ratio",
-    "follower": "cam", "constant_velocity": "cv", "homokinetic": "cv",
+    "follower": "cam",
 }  # fmt: skip
 SHAPE_WORDS = {
     "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",
@@ -41,7 +41,8 @@ KEY_WORDS = {
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
     "rho": "density", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
-    "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
+    "when": "time", "instant": "time", "t": "time", "point": "on", "slack": "tension_only",
+    "lifts": "one_sided", "unilateral": "one_sided",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
     "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),
@@ -88,6 +89,7 @@ METHOD_WORDS = {  # of methods, in lower case, without hyphens
     "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
 }  # fmt: skip
 FORMS = {  # what the values of some keys look like
+    "rotor": "what turns in the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
     "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
     "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
     "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
@@ -130,7 +132,33 @@ MISSING = {  # what a key is that must be there
     "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
 }  # fmt: skip
 OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
-BALL_AND_CV = "a constant-velocity joint is a ball, and couplings: {NAME: {type: cv, joint: BALL, axis: [1, 0, 0]}}"
+MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
+    "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
+    "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
+    "torque": "its torque at standstill is stall",
+    "gear": "it is called ratio here: turns of the motor for one of the joint",
+    "max_torque": "it is called limit here", "torque_limit": "it is called limit here",
+    "peak_torque": "it is called limit here", "duty": "it is called value here",
+    "max_speed": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "speed_limit": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "rotor_inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "armature": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "damping": "a load beside it: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
+    "friction": "a load beside it: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}",
+    "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
+    "current": "currents and voltages are not computed: limit is the torque at the largest current",
+}  # fmt: skip
+BRAKE = dict.fromkeys(("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"') | dict.fromkeys(
+    ("size", "value"), "of a given size it has a torque, in a slide a force"
+)
+LATCH = dict.fromkeys(
+    ("until", "opens", "off"), "it lets go where release becomes true: release: t > 1.5"
+) | dict.fromkeys(
+    ("at", "time", "from", "position"), "where it catches is angle or travel, from what on is when: t > 0.1"
+)
+BY_KEYS = ((("stall", "ratio"), MOTOR), (("joint", "speed", "radius"), BRAKE), (("release", "every"), LATCH))
+CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
 ELSEWHERE = {  # keys that stand in another place than the one where they were written
     "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
     "restitution": "it stands at a rod with tension_only, or at a stop",
@@ -149,10 +177,10 @@ ELSEWHERE = {  # keys that stand in another place than the one where they were w
     "material": "a shape takes density: 7850 kg/m^3",
     "color": "shapes have no looks",
     "colour": "shapes have no looks",
-    "cv": BALL_AND_CV,
-    "constant_velocity": BALL_AND_CV,
-    "homokinetic": BALL_AND_CV,
-    "rzeppa": BALL_AND_CV,
+    "cv": CV,
+    "constant_velocity": CV,
+    "homokinetic": CV,
+    "rzeppa": CV,
 }
 JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
 LATER = {  # of the format, but of a later version: (block or key, word)

@@ -144,6 +144,7 @@ class ClosureRow:
     radius: float = 0.0
     pivot: Vector = ZERO
     h: Vector = ZERO
+    counter: int = 0
 
 
 @record
@@ -174,12 +175,13 @@ class ContactRow:
 
 @record
 class CounterRow:
-    """The angle of a pin that was cut."""
+    """The angle of a pin that was cut, or the place of what was cut along its path."""
 
     a: int
     b: int
     at: int
     axis: Array
+    track: int
 
 
 @record

@@ -13,7 +13,7 @@ from heuncli.joint_kinds import JOINTS, Direction
 from heuncli.mechanism.model import GROUND, Assembly, Joint, Mechanism
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.shapes.rotations import about, cross_rows, perpendicular, to_quaternion
+from heuncli.shapes.rotations import about, cross_rows, perpendicular, to_quaternion, turn_onto
 from heuncli.tree.spanning import Spanning
 
 Z = np.array([0.0, 0.0, 1.0])
@@ -55,6 +55,8 @@ def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointSta
     xb, Rb, vb, wb = pose(start, joint.b)
     R = Ra.T @ Rb
     kind = JOINTS[joint.kind]
+    if kind.turns_alike:
+        require_bend(joint, R)
     if not kind.turns and "travel" not in kind.coordinates:
         return JointStart(R, 0.0, 0.0, 0.0, 0.0)
     n = joint.axis
@@ -112,6 +114,16 @@ def require_one_branch(joint: Joint, path: Path, place: Array) -> None:
         raise SolveError(Problem("path-branch", message, None, hint, f"joints.{joint.name}"))
 
 
+def require_bend(joint: Joint, R: Array) -> None:
+    """Raise SolveError where two shafts that turn alike start bent by a right angle or more."""
+    cosine = float(joint.axis @ R @ joint.to_axis)
+    if cosine <= tolerances.PARALLEL:
+        bend = math.degrees(math.acos(max(cosine, -1.0)))
+        message = f"joint {joint.name} (cv): its two shafts start bent by {bend:.4g} deg, and turn alike only below 90"
+        hint = "axis and to_axis point the same way along the line of shafts: turn one of them round, or bend it less"
+        raise SolveError(Problem("cv-bend", message, None, hint, f"joints.{joint.name}"))
+
+
 def first_angle(joint: Joint, R: Array) -> float:
     """Of a universal: by how much its second axis has turned about the first, in (-pi, pi].
 
@@ -153,6 +165,12 @@ def to_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
     if direction == "to_axis":
         return joint.to_axis
     return np.asarray(R_ref.T @ joint_frame(joint, direction))
+
+
+def bent_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
+    """What a direction of `from` becomes in `to`, its axes, where the bend that turns axis onto to_axis turns it."""
+    bend = turn_onto(joint.axis, R_ref @ joint.to_axis)
+    return np.asarray(R_ref.T @ bend @ joint_frame(joint, direction))
 
 
 def unwrapped(angle: float, near: float) -> float:

@@ -214,6 +214,32 @@ def test_a_face_that_turns_with_its_disc() -> None:
     solved(text.replace(rise, table(lambda x: -0.05 * x, -0.3, 0.3, 6)).replace("20.0*t", "0.2*sin(20*t)"))
 
 
+SWINGING = """
+heun: 1
+gravity: [0, 0, 0]
+tables: {lift: RISE}
+bodies:
+  frame: {mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.2], position: [1, 2, 0],
+    points: {O: [0, 0, 0], P: [-0.3, 0.1, 0]}}
+  disc: {mass: 2, center: [0.02, 0, 0], inertia: [0.01, 0.01, 0.02], points: {O: [0, 0, 0]}}
+  lever: {mass: 1, center: [0.1, 0, 0], inertia: [0.01, 0.01, 0.02], points: {P: [0, 0, 0], roll: [0.3, 0, 0]}}
+joints:
+  shaft: {type: pin, from: frame.O, to: disc.O, axis: [0, 0, 1], to_axis: [0, 0, 1]}
+  pivot: {type: pin, from: frame.P, to: lever.P, axis: [0, 0, 1], to_axis: [0, 0, 1]}
+couplings:
+  cam: {type: cam, of: [shaft, pivot], lift: lift, at: lever.roll, contact: point, two_sided: true}
+analysis: {type: state}
+"""
+
+
+def test_a_lever_that_counts_from_where_it_is_drawn_starts_on_its_cam() -> None:
+    """What the cam turns the lever by is counted, and does not move the frame, which stands where it is held."""
+    start = solved(SWINGING.replace("RISE", table(lambda x: 0.1 + 0.05 * np.cos(x), 0.0, 2.0 * math.pi, 24)))
+    shaft, pivot = (float(start.coordinates[name]["angle"][0]) for name in ("shaft", "pivot"))
+    assert pivot == pytest.approx(0.1 + 0.05 * math.cos(shaft), abs=1e-5)
+    near(start.bodies["frame"]["position"][0], [1.0, 2.0, 0.0], 1.0, 1e-14)
+
+
 def test_a_tappet_without_spring_lifts_off() -> None:
     """Where e w^2 sin = g: the run ends there, and says why."""
     rate = 40.0

@@ -320,3 +320,29 @@ def test_what_two_drives_leave_open_of_teeth() -> None:
     found = solved(scene).couplings["mesh"]
     assert all(np.isnan(found[name]).all() for name in ("force", "radial", "normal"))
     assert not found["axial"].any()
+
+
+def test_what_two_stops_that_are_struck_at_once_leave_open_of_a_coupling() -> None:
+    """Carts of 2 and 3 kg that move against each other come to both stops: Σ m Δv = -1.5 N s is all that is certain."""
+    scene = {
+        "ground": {"points": {"A": [0, 0, 0], "B": [0, 1, 0]}},
+        "bodies": {
+            name: {"mass": m, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0]}}
+            for name, m in (("a", 2), ("b", 3))
+        },
+        "joints": {
+            "p": {"type": "slide", "from": "ground.A", "to": "a.o", "axis": [1, 0, 0], "initial": {"speed": 1}},
+            "q": {"type": "slide", "from": "ground.B", "to": "b.o", "axis": [1, 0, 0]},
+        },
+        "couplings": {"tie": {"type": "ratio", "of": ["p", "q"], "factors": [1, 1]}},
+        "stops": {
+            "far": {"joint": "p", "travel": [None, 0.5], "restitution": 0.5},
+            "near": {"joint": "q", "travel": [-0.5, None], "restitution": 0.5},
+        },
+        "analysis": {"duration": 1, "samples": 2},
+    }
+    (struck,) = solved(scene).impulses
+    tie = struck["couplings"]["tie"]
+    assert tie["open"] == ["force", "on.a.force.x", "on.ground.force.x", "on.ground.moment.z", "on.b.force.x"]
+    assert np.isnan([tie["force"], tie["on"]["a"]["force"][0], tie["on"]["b"]["force"][0]]).all()
+    near(struck["foundation"]["force"], (-1.5, 0.0, 0.0), 1.0, ROUNDING)

@@ -1,8 +1,6 @@
-"""Ropes over sheaves against formulas: Atwood's machine, tackles, Weston's, drums, what catches; and cv joints."""
+"""Ropes over sheaves against formulas: Atwood's machine, tackles, Weston's, drums, what catches."""
 
 from __future__ import annotations
-
-from typing import Any
 
 import numpy as np
 import pytest
@@ -270,34 +268,6 @@ analysis: {{type: rest}}
     assert results.couplings["rope"]["tension"][0] == pytest.approx(5 * G - 100 * (hangs - 1.5), abs=1e-7)
 
 
-@pytest.mark.parametrize("bend", [0.0, 0.5, 1.2])
-def test_constant_velocity(bend: float) -> None:
-    """Both shafts turn at one rate at any bend: one angular acceleration by the sum of the inertias about them."""
-    c, s = float(np.cos(bend)), float(np.sin(bend))
-    text = f"""
-heun: 1
-ground: {{points: {{A: [0, 0, 0], B: [{0.5 + 0.5 * c!r}, {0.5 * s!r}, 0]}}}}
-bodies:
-  a: {{mass: 1, center: [0, 0, 0], inertia: [0.01, 0.02, 0.02], points: {{o: [0, 0, 0], tip: [0.5, 0, 0]}}}}
-  b: {{mass: 1, center: [0, 0, 0], inertia: [0.03, 0.05, 0.05], position: [0.5, 0, 0],
-      orientation: {{axis: [0, 0, 1], angle: {bend!r}}}, points: {{o: [0, 0, 0], tip: [0.5, 0, 0]}}}}
-joints:
-  first: {{type: pin, from: ground.A, to: a.o, axis: [1, 0, 0], initial: {{angle: 0.3, rate: 2}}}}
-  ball: {{type: ball, from: a.tip, to: b.o}}
-  second: {{type: line, from: ground.B, to: b.tip, axis: [{c!r}, {s!r}, 0]}}
-couplings: {{cv: {{type: cv, joint: ball, axis: [1, 0, 0]}}}}
-forces: {{motor: {{type: torque, joint: first, value: 3}}}}
-analysis: {{duration: 0.5, samples: 6}}
-"""
-    results = solved(text)
-    rate = 2.0 + 3.0 / 0.04 * results.time
-    omega: Any = results.bodies["b"]["angular_velocity"]
-    assert omega == pytest.approx(rate[:, None] * np.array([c, s, 0.0]), abs=1e-8 * rate[-1])
-    assert results.couplings["cv"]["torque"] == pytest.approx(np.full(6, 2.25), rel=1e-8)
-    couple = np.linalg.norm(results.couplings["cv"]["on"]["b"]["moment"], axis=1)
-    assert couple == pytest.approx(np.full(6, 2.25 / np.cos(bend / 2)), rel=1e-8)
-
-
 def test_sections_see_where_strands_act() -> None:
     """A jib with a sheave of 0.1 m at its end: the rope runs back above it to the ground, and down to a weight.
 
@@ -376,3 +346,23 @@ def test_a_rope_that_a_blow_would_have_to_push_is_told_by_its_place() -> None:
     with pytest.raises(SolveError, match="the rope hoist would have to push") as refused:
         solved(roped_cage(-9.81, blow))
     assert refused.value.problems[0].about == "couplings.hoist"
+
+
+def test_a_law_that_jerks_a_taut_rope_is_told() -> None:
+    """With restitution, which lets it go slack; without, it holds through the jump."""
+    scene = roped_cage(-9.81, "analysis: {duration: 1, samples: 3}")
+    law = 'length: "9 - 0.5*max(t - 0.2, 0)", tension_only: true'
+    with pytest.raises(SolveError, match="the rate of the length of hoist jumps from 0 to -0.5 m/s") as refused:
+        solved(scene.replace("tension_only: true", f"{law}, restitution: 0"))
+    assert refused.value.problems[0].code == "rope-jerked"
+    assert solved(scene.replace("tension_only: true", law)).impulses[0]["energy_jump"] == pytest.approx(0.5 * 9 * 0.25)
+
+
+@pytest.mark.parametrize(("x", "where"), [(0.3, 0.3), (0.1, 0.1)])
+def test_an_end_that_lies_on_its_sheave_is_told(x: float, where: float) -> None:
+    text = atwood("free").replace("through: [a.top, {", f"through: [{{body: sheave, at: [{x}, 0]}}, {{")
+    with pytest.raises(
+        SolveError, match=f"this point stands {where:g} m from the axis of the sheave behind"
+    ) as refused:
+        solved(text)
+    assert refused.value.problems[0].about == "couplings.rope.through.0"

@@ -12,14 +12,12 @@ MIRROR = Addition(  # two joints whose coordinates are opposite: what the one tu
     "A coupling",
     {
         "heuncli/spec/format_couplings.py": (
-            Edit("CouplingEntry = (\n", """class MirrorEntry(Entry):
+            Edit("CouplingEntry = RatioEntry", """class MirrorEntry(Entry):
     type: Literal["mirror"]
     of: list[str]
 
 
-CouplingEntry = (
-    MirrorEntry |
-"""),
+CouplingEntry = MirrorEntry | RatioEntry"""),
             after("COUPLINGS: dict[str, type[CouplingEntry]] = {\n", """    "mirror": MirrorEntry,
 """),
         ),

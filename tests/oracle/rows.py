@@ -22,7 +22,7 @@ from tests.oracle import cams, gears, ropes
 from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.sums import sums
-from tests.oracle.turns import Array, across, cross, turn_vector
+from tests.oracle.turns import Array, about, across, cross, turn_vector
 from tests.oracle.wheels import lines
 
 Directions = list[tuple[Array, Array]]  # world vectors and their rates
@@ -34,6 +34,7 @@ KINDS = {
     "slide": ("across", "all"),
     "cylinder": ("across", "across"),
     "universal": ("all", "both"),
+    "cv": ("all", "halving"),
     "weld": ("all", "all"),
     "line": ("across", "none"),
     "plane": ("along", "none"),
@@ -77,6 +78,11 @@ def directions(which: str, joint: Joint, state: State) -> Directions:
     if which == "both":  # a·b = 0: turning about b×a is held
         a, b = A.rotation @ joint.axis, B.rotation @ joint.to_axis
         return [(cross(b, a), cross(cross(B.angular_velocity, b), a) + cross(b, cross(A.angular_velocity, a)))]
+    if which == "halving":  # the plane that halves the bend has all axes about which `to` turns in `from`
+        a, b = A.rotation @ joint.axis, B.rotation @ joint.to_axis
+        n, n_rate = a + b, cross(A.angular_velocity, a) + cross(B.angular_velocity, b)
+        size = float(np.linalg.norm(n))
+        return [(n / size, (n_rate - n / size * float(n / size @ n_rate)) / size)]
     axes = [joint.axis] if which == "along" else across(joint.axis)
     return [(A.rotation @ e, cross(A.angular_velocity, A.rotation @ e)) for e in axes]
 
@@ -217,6 +223,9 @@ def joint_gaps(joint: Joint, state: State, t: float) -> list[float]:
             found[-1] = np.pi
     elif moments == "both":
         found.append(float(np.arcsin(a @ b)))
+    elif moments == "halving":  # by how much more than its bend `to` has turned since the start
+        since = unbent(A.rotation.T @ B.rotation, joint) @ unbent(joint.relative, joint).T
+        found.append(float(turn_vector(since) @ joint.axis))
     elif moments == "all":
         found += list(B.rotation @ turn_vector((A.rotation @ joint.relative).T @ B.rotation))
     if joint.drive is not None:
@@ -224,6 +233,14 @@ def joint_gaps(joint: Joint, state: State, t: float) -> list[float]:
         excess = coordinates(joint, state)[quantity] - float(value(t))
         found.append(float(np.arctan2(np.sin(excess), np.cos(excess))) if quantity == "angle" else excess)
     return found
+
+
+def unbent(relative: Array, joint: Joint) -> Array:
+    """An attitude of `to` in `from` less the bend: the least turn that takes its axis onto that of `from`."""
+    b = relative @ joint.to_axis
+    lean = cross(b, joint.axis)
+    sine = float(np.linalg.norm(lean))
+    return (about(lean / sine, float(np.arctan2(sine, b @ joint.axis))) if sine > 0.0 else np.eye(3)) @ relative
 
 
 def coordinates(joint: Joint, state: State) -> dict[str, float]:

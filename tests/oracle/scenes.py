@@ -188,6 +188,8 @@ class Maker:
             spec["to_axis"] = (B.rotation.T @ A.rotation @ unit(spec["axis"])).tolist()
         elif kind == "universal":
             spec["to_axis"] = (B.rotation.T @ A.rotation @ relative @ np.array(spec["to_axis"])).tolist()
+        elif kind == "cv":
+            spec["to_axis"] = (B.rotation.T @ A.rotation @ relative @ spec.get("to_axis", spec["axis"])).tolist()
         self.join(name, kind, spec, a, p, b, q)
 
     def set_moving(self) -> None:
@@ -360,6 +362,16 @@ def place_universal(rng: np.random.Generator) -> Placing:
     return {"axis": given, "to_axis": (R.T @ (np.cos(angle) * e + np.sin(angle) * f)).tolist()}, np.zeros(3), R
 
 
+def place_cv(rng: np.random.Generator) -> Placing:
+    """Bent less than a right angle, and turned anyhow about the shaft."""
+    given, axis = some_axis(rng)
+    bend = about(unit(cross(axis, random_unit(rng))), float(rng.uniform(0.0, 1.3)))
+    if rng.random() < 0.5:
+        return {"axis": given}, np.zeros(3), bend @ about(axis, float(rng.uniform(-3, 3)))
+    R = random_rotation(rng)
+    return {"axis": given, "to_axis": (R.T @ bend @ axis).tolist()}, np.zeros(3), R
+
+
 def place_plane(rng: np.random.Generator) -> Placing:
     given, normal = some_axis(rng)
     e, f = across(normal)
@@ -379,6 +391,7 @@ PLACE: dict[str, Callable[[np.random.Generator], Placing]] = {
     "slide": place_slide,
     "line": place_slide,
     "universal": place_universal,
+    "cv": place_cv,
     "plane": place_plane,
     "rod": place_rod,
 }

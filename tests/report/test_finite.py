@@ -70,14 +70,13 @@ joints:
   run: {type: slide, from: ground.C, to: nut.o, axis: [0, 1, 0]}
   rails: {type: slide, from: ground.D, to: hung.o, axis: [0, 1, 0]}
   first: {type: pin, from: ground.E, to: shaft.o, axis: [1, 0, 0]}
-  ball: {type: ball, from: shaft.end, to: bent.o}
+  bend: {type: cv, from: shaft.end, to: bent.o, axis: [1, 0, 0]}
 couplings:
   valve: {type: cam, of: [cam, guide], lift: lift, at: tappet.face, contact: flat, normal: [0, 1, 0], two_sided: true}
   belt: {type: belt, of: [cam, other], radii: [0.1, 0.2], pretension: 5}
   thread: {type: screw, of: [spin, run], lead: 0.1, friction: {coefficient: 0.1, radius: 0.05, speed: 0.1}}
   cable: {type: rope, through: [nut.o, {sheave: pulley.o, radius: 0.2, slip: none, side: over}, hung.o]}
   pair: {type: ratio, of: [spin, first], factors: [1, 2]}
-  bend: {type: cv, joint: ball, axis: [1, 0, 0]}
 rolling:
   rim: {wheel: wheel.o, axis: [0, 0, 1], radius: 0.5, on: ground.O, normal: [0, 1, 0], friction: 0.9, held: true}
 forces:

@@ -157,5 +157,8 @@ def free_directions_carry_nothing(c: Case) -> None:
                 a = placed(c.states[k], j.a.body).rotation @ j.axis
                 b = placed(c.states[k], j.b.body).rotation @ j.to_axis
                 near([block["moment"][k] @ a, block["moment"][k] @ b], 0.0, F * c.length, FREE)
+            if j.kind == "cv" and not np.isnan(block["moment"][k]).any():
+                ((n, _),) = directions("halving", j, c.states[k])
+                near(cross(n, block["moment"][k]), 0.0, F * c.length, FREE)
             if j.kind == "rod" and not np.isnan(block["force"][k]).any():
                 near(cross(block["force"][k], axis_between(j, c.states[k])), 0.0, F, FREE)

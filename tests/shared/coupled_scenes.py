@@ -16,7 +16,7 @@ from heuncli.errors import HeunError
 from heuncli.results import Array
 from tests.oracle.read import GROUND, Placed, placed, state_at
 from tests.oracle.scenes import Maker
-from tests.oracle.turns import about, across, random_rotation, random_unit
+from tests.oracle.turns import across, random_rotation, random_unit
 from tests.shared.geared_scenes import belt, member, mesh, rubs, thread
 from tests.shared.rolling_scenes import stand
 from tests.shared.scenes import solved
@@ -136,15 +136,8 @@ def rope_through_points(parts: Parts, name: str) -> None:
 
 
 def constant_velocity(parts: Parts, name: str) -> None:
-    rng, maker = parts.rng, parts.maker
-    maker.body(f"{name}a", ("pin", "universal"), 0.5, 0.3, 0.0)
-    maker.body(f"{name}b", ("ball",), 0.0, 0.0, 0.0)
-    joint = maker.scene["joints"][f"j_{name}b"]
-    one, other = (placed(maker.state, owner(joint[end])).rotation for end in ("from", "to"))
-    axis = random_unit(rng)
-    bent = about(across(axis)[0], float(rng.uniform(0.1, 1.0))) @ axis
-    told = {"axis": axis.tolist(), "to_axis": (other.T @ one @ bent).tolist()}
-    parts.couple(name, {"type": "cv", "joint": f"j_{name}b", **told})
+    parts.maker.body(f"{name}a", ("pin", "universal"), 0.5, 0.3, 0.0)
+    parts.maker.body(f"{name}b", ("cv",), 0.0, 0.0, 0.0)
 
 
 def table_of(function: Callable[[Array], Array], x: Array, **more: Any) -> Scene:
@@ -201,6 +194,20 @@ def curve(parts: Parts, name: str) -> None:
     }  # fmt: skip
 
 
+def tracks(parts: Parts, name: str) -> None:
+    """The same with another point on a path that is the first's, shifted by less than the points are apart."""
+    curve(parts, name)
+    del parts.scene["bodies"][name]["orientation"]
+    rng, joints = parts.rng, parts.scene["joints"]
+    first, apart = joints[f"j_{name}"], float(rng.uniform(0.5, 1.0)) * random_unit(rng)
+    shift = float(rng.uniform(0.4, 0.9)) * np.linalg.norm(apart) * random_unit(rng)
+    joints[f"j_{name}_2"] = {
+        "type": "curve", "from": {**first["from"], "at": (np.array(first["from"]["at"]) + shift).tolist()},
+        "to": {**first["to"], "at": (np.array(first["to"]["at"]) + apart).tolist()},
+        **{axis: f"{name}_{axis}" for axis in "xyz"},
+    }  # fmt: skip
+
+
 def wheel(parts: Parts, name: str) -> None:
     """One wheel or ball, on a plane of the ground or a carrier; what there is hangs on nothing of it."""
     if "rolling" in parts.scene:
@@ -220,8 +227,9 @@ ELEMENTS: dict[str, Callable[[Parts, str], None]] = {
     **{form: gears(form) for form in ("external", "internal", "bevel", "rack", "screw", "belt")},
     "threaded": threaded_cylinder, "ratio": ratio, "differential": differential, "rope": rope,
     "points": rope_through_points, "cv": constant_velocity, "cam": cam, "curve": curve, "wheel": wheel,
+    "tracks": tracks,
 }  # fmt: skip
-LAST = ("cam", "curve")  # Maker does not know where these are
+LAST = ("cam", "curve", "tracks")  # Maker does not know where these are
 
 
 def drawn(rng: np.random.Generator, kinds: tuple[str, ...]) -> Parts:

@@ -54,6 +54,13 @@ def test_every_format_gives_the_solid(name: str) -> None:
     assert mesh.low == pytest.approx(RING.min(axis=(0, 1)), abs=1e-6)
 
 
+def test_all_solids_of_a_text_are_read_however_they_are_written() -> None:
+    small, capital = t.text_stl(UNIT), t.text_stl(UNIT + 2.0, "other").upper()
+    for written in (small + capital, capital + small, small + t.text_stl(UNIT + 2.0)):
+        mesh = mesh_of(written.encode(), "a.stl")
+        assert (mesh.shells, mesh.volume) == (2, pytest.approx(2.0))
+
+
 def test_faces_of_four_corners_and_numbers_counted_back() -> None:
     corners = [f"v {k & 1} {k >> 1 & 1} {k >> 2 & 1}" for k in range(8)]
     faces = [f"f {' '.join(str(k + 1) for k in face)}" for face in t.FACES]

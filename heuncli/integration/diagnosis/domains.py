@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,19 +11,21 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
+from heuncli.integration.diagnosis.ways import Moving, along_cut_paths, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import BushingLoad, Load, Mechanism, PairLoad, RopeLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad, RopeLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows, inverse_jacobian
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
 
 # An expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later.
 NEAREST, FARTHEST = 52, 20
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
-
-Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate or a point's, and its rate of change
 
 
 def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving:
@@ -36,11 +38,14 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
             name = joints[freedom.joint].name
             coordinates[name, freedom.quantity] = q, u
             coordinates[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
+    coordinates |= along_cut_paths(layout, recovered.states[instant], recovered.bodies[instant])
     for name, point in layout.mechanism.points.items():
         jets = motion_of(layout, point, recovered.bodies[instant : instant + 1])[0]
         coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
     for load, rows in layout.mechanism.load_rows():
         coordinates |= acted_between(load, recovered.loads[instant, rows])
+        if isinstance(load, BushingLoad):
+            coordinates |= strains(layout, load, rows.start, recovered, instant)
     return coordinates
 
 
@@ -50,12 +55,38 @@ def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     if isinstance(load, PairLoad | RopeLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
-    if not isinstance(load, BushingLoad):
-        return {}
-    parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
+    return {}
+
+
+def strains(layout: Layout, load: BushingLoad, first: int, recovered: Recovered, instant: int) -> Moving:
+    """The shift and the turn of a bushing with their rates, in its own axes; first: its row of the kernel's loads."""
+    bodies, row = recovered.bodies[instant], layout.tables["loads"][first]
+    (x_a, v_a, R_a, omega_a), (x_b, v_b, _, omega_b) = (
+        point_of(bodies, int(row[body]), vector(row[point])) for body, point in (("a", "p"), ("b", "q"))
+    )
+    axes = R_a @ load.frame
+    shift, turn = (np.array(vector(own)) for own in recovered.loads[instant, first : first + 2]["strain"])
+    slip = axes.T @ (v_b - v_a - cross_rows(omega_a, x_b - x_a))
+    turning = inverse_jacobian(turn) @ axes.T @ (omega_b - omega_a)
     return {
-        (name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)
+        (f"{LOADS}.{load.name}", f"{of}_{axis}"): (float(x), float(rate))
+        for of, strain, rates in (("shift", shift, slip), ("turn", turn, turning))
+        for axis, x, rate in zip("xyz", strain, rates, strict=True)
     }
+
+
+def vector(own: Any) -> Array:
+    """A vector of the kernel's tables."""
+    return np.array(own.tolist())
+
+
+def point_of(bodies: Table, body: int, arm: Array) -> tuple[Array, Array, Array, Array]:
+    """Of a body's point, or the ground's: place, velocity; of the body attitude and angular velocity."""
+    if body == GROUND:
+        return arm, np.zeros(3), np.eye(3), np.zeros(3)
+    own = bodies[body]
+    turned = own["R"] @ arm
+    return own["r"] + turned, own["v"] + cross_rows(own["omega"], turned), own["R"], own["omega"]
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:
@@ -65,7 +96,7 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     """
     scale = max(abs(t), length)
     beyond = scale * 2.0**-FARTHEST
-    if problems := paths_left(mechanism, t, beyond, coordinates) + lifts_left(mechanism, t, beyond, coordinates):
+    if problems := ways_left(mechanism, t, beyond, coordinates):
         return problems
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
@@ -83,42 +114,6 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates)))
         > 0.0
     ]
-
-
-def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
-    """The joints whose points are at the end of their paths at t, or by their rates just beyond it."""
-    problems = []
-    for joint in mechanism.joints:
-        path = joint.path
-        s, u = coordinates.get((joint.name, "travel"), (math.nan, 0.0))
-        if path is None or path.period or path.first <= s + beyond * u <= path.last:
-            continue
-        message = f"at t = {t:.9g} s the point of joint {joint.name} runs off its path, which covers travel from "
-        message += f"{path.first:.9g} to {path.last:.9g} m"
-        end = f"> {path.last:.6g}" if s > 0.5 * (path.first + path.last) else f"< {path.first:.6g}"
-        hint = f"a longer path, or end the run before: until: {joint.name}.travel {end}"
-        problems.append(Problem("path-ends", message, None, hint, f"joints.{joint.name}"))
-    return problems
-
-
-def lifts_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
-    """The cams whose discs are at the end of their lifts at t, or by their rates just beyond it."""
-    problems = []
-    for coupling in mechanism.couplings:
-        shape = coupling.rows[0].parts[0].cam if coupling.rows else None
-        if shape is None or shape.lift.period:
-            continue
-        lift, shaft = shape.lift, mechanism.joints[coupling.rows[0].parts[0].coordinates[0].joint].name
-        angle, rate = coordinates.get((shaft, "angle"), (math.nan, 0.0))
-        if math.isnan(angle) or lift.first <= angle + beyond * rate <= lift.last:
-            continue
-        first, last = math.degrees(lift.first), math.degrees(lift.last)
-        message = f"at t = {t:.9g} s the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle "
-        message += f"from {first:.9g} to {last:.9g} deg"
-        end = f"> {last:.6g}" if angle > 0.5 * (lift.first + lift.last) else f"< {first:.6g}"
-        hint = f"a longer lift, or one with a period, or end the run before: until: {shaft}.angle {end} deg"
-        problems.append(Problem("path-ends", message, None, hint, f"couplings.{coupling.name}"))
-    return problems
 
 
 def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:

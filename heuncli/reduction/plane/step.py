@@ -12,7 +12,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane.departures import Departure, departures
+from heuncli.reduction.plane.departure import Departure
+from heuncli.reduction.plane.departures import departures
 from heuncli.reduction.plane.frame import candidates
 from heuncli.reduction.plane.mechanism import NotTold, flat_scene
 from heuncli.reduction.plane.states import States

@@ -20,7 +20,7 @@ def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
     """What is coupled are joints with coordinates, each once."""
     joints = draft.names.joints
     for name, coupling in draft.document.couplings.items():
-        of = [] if isinstance(coupling, f.RopeEntry | f.ConstantVelocityEntry) else coupling.of
+        of = [] if isinstance(coupling, f.RopeEntry) else coupling.of
         for i, word in enumerate(of):
             path = ("couplings", name, "of", i)
             joint, _, quantity = word.partition(".")
@@ -217,20 +217,3 @@ def stretching(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
         message = "a rope that stretches and is held on a sheave: what it carries over it at which strain is not told"
         hint = "slip: free; or leave out the stiffness; or a rope on either side, each ending at a point of the rim"
         yield Violation((*path, "stiffness"), message, hint)
-
-
-@rule("cv-joint")
-def cv_joint(draft: DraftDocument) -> Iterator[Violation]:
-    """Shafts that turn alike meet in a ball, in space."""
-    joints = draft.names.joints
-    for name, own in draft.document.couplings.items():
-        if not isinstance(own, f.ConstantVelocityEntry):
-            continue
-        path = ("couplings", name, "joint")
-        if own.joint not in joints:
-            yield Violation(path, f"'{own.joint}' is not a joint", did_you_mean(own.joint, joints, "joints") or "")
-        elif joints[own.joint] != "ball":
-            message = f"{own.joint} is a {joints[own.joint]}: a constant-velocity joint is made of a ball"
-            yield Violation(path, message, "type: ball; the coupling holds its turn about the shafts")
-        elif draft.document.head.space == "planar":
-            yield Violation(path, "shafts that turn alike have no bend in a plane", "a pin, or space: spatial")

@@ -14,6 +14,7 @@ from heuncli.spec.rules import (
     latches,
     loads,
     methods,
+    motors,
     naming,
     not_yet,
     paths,
@@ -28,8 +29,8 @@ from heuncli.spec.rules import (
 from heuncli.spec.rules.registry import RULES, DraftDocument, Rule, Violation, violations
 
 MODULES = (
-    naming, references, bodies, products, joints, paths, plane, loads, stops, latches, couplings, threads, rolling,
-    cams, sections,
+    naming, references, bodies, products, joints, paths, plane, loads, motors, stops, latches, couplings, threads,
+    rolling, cams, sections,
     analysis, methods, conditions, expect, curves, not_yet,
 )  # fmt: skip
 

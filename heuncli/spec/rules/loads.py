@@ -121,9 +121,6 @@ def load_form(draft: DraftDocument) -> Iterator[Violation]:
             for key in ("stiffness", "turning", "damping", "turning_damping", "preload", "turning_preload")
         ):
             yield Violation(path, "a bushing that resists nothing", "give stiffness, turning or both", key=True)
-        if isinstance(load, fe.MotorEntry) and load.ratio == 0.0:
-            message = "a motor of ratio 0 turns nothing"
-            yield Violation((*path, "ratio"), message, "turns of the motor for one of the joint, as 30")
 
 
 NUMBERS = {"spring": ("stiffness", "length"), "turn_spring": ("stiffness",)}  # that one without a law has to have

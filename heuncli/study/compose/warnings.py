@@ -84,7 +84,8 @@ def of_the_motion(setup: Setup, history: History) -> list[str]:
         goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
         lines.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
     if checked.run.undecided:
-        lines.append(f"of {checked.run.undecided} steps it could not be decided what loads do between their stages")
+        steps = "one step" if checked.run.undecided == 1 else f"{checked.run.undecided} steps"
+        lines.append(f"of {steps} it could not be decided what loads do between their stages")
     if checked.run.stopped is not None:
         lines.append(f"stopped before the end: {status(history, setup.scene.mechanism)['message']}")
     return lines
@@ -95,6 +96,8 @@ def would_let_go(mechanism: Mechanism, name: str) -> str:
     kinds = {coupling.name: coupling.given.type for coupling in mechanism.couplings}
     if kinds.get(name) == "cam":
         return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
+    if any(joint.name == name and joint.one_sided for joint in mechanism.joints):
+        return f"contact lost: the point of joint {name} lifts off its path (with restitution it would fly, and strike)"
     return f"the {kinds.get(name, 'rod')} {name} would have to push (tension_only)"
 
 
@@ -111,6 +114,9 @@ def of_ropes(setup: Setup, recovery: Recovery, joints: Mapping[str, JointBlock])
     rods = [
         j.name for j in mechanism.joints if j.tension_only and j.name in joints and joints[j.name]["tension"][0] < 0.0
     ]
+    layout = setup.scene.layout
+    pulled = recovery.recovered.rows["multiplier"][0] > 0.0
+    rods += [j.name for k, j in enumerate(mechanism.joints) if j.one_sided and pulled[layout.rows.index(k)]]
     ropes = [own.coupling.name for own in recovery.couplings if own.coupling.given.type == "rope" and pushes(own)]
     cams = [own for own in recovery.couplings if own.carries == "contact" and own.coupling.rows[0].tension_only]
     return [would_let_go(mechanism, name) for name in (*rods, *ropes)] + [

@@ -162,7 +162,7 @@ def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
 
     So does what a cam presses: it may lie on it or not.
     """
-    joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
+    joints = [replace(j, restitution=0.0) if j.opens and j.restitution is None else j for j in mechanism.joints]
     return replace(mechanism, joints=tuple(joints), couplings=tuple(slackening(own) for own in mechanism.couplings))
 
 

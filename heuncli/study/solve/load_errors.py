@@ -40,6 +40,9 @@ CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave ope
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
 
+Quantity = tuple[str, Array]  # of couplings: what it is, of UNITS, and values (n, k, 3) or (n, k, 1)
+UNITS = {"force": "N", "moment": "N·m", "place": "m", "angle": "rad"}
+
 # Kinds, and the reports that tell something of them: what nobody asks for is not compared.
 TOLD_IN = {
     "reactions": {"joints", "foundation"},
@@ -130,9 +133,12 @@ class LoadErrors:
             joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
-            belts = [own for own in applied if own.name in {x.coupling.name for x in couplings}]  # their pretension
-            told = [in_axes(load, states, self.setup.asked.axes) for load in joints]
-            self.add_joints(told, [*coupled, *belts], terms)
+            coupling_told: Sequence[Quantity] = ()
+            if couplings:
+                from heuncli.study.solve.coupling_errors import told_of  # few scenes have them
+
+                coupling_told = [*told_of(couplings, applied, self.setup.scene.mechanism.joints, states)]
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupling_told, terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
@@ -155,7 +161,11 @@ class LoadErrors:
         for load in loads:
             self.take(("forces", "N"), load.action.force, F, terms.force)
             self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
-            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+            none = np.zeros(len(F))
+            self.take(("forces", "W"), load.power, none, terms.force)
+            if load.strain is not None:
+                self.take(("strains", "m"), load.strain[:, 0], none, none)
+                self.take(("strains", "rad"), load.strain[:, 1], none, none)
 
     def add_motion(self, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach.
@@ -192,13 +202,16 @@ class LoadErrors:
         far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
         """Reactions, in the axes in which they are told, those of couplings among them, and drives."""
         F, M = terms.rounding
-        for some in (joints, coupled):
-            if some:
-                self.take(("reactions", "force"), np.stack([x.force for x in some], axis=1), F, terms.force)
-                self.take(("reactions", "moment"), np.stack([x.moment for x in some], axis=1), M, terms.moment)
+        if joints:
+            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        none = np.zeros(len(F))
+        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (none, none), "angle": (none, none)}
+        for name, values in coupled:
+            self.take(("reactions", name), values, *of[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
@@ -280,11 +293,12 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces")}
+        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains")}
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
                 found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
+        found |= {("reactions", UNITS[x]): of["reactions", x] for x in ("place", "angle") if ("reactions", x) in of}
         found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
         found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
         return found | self.errors_by_cause()
