@@ -223,3 +223,32 @@ def test_refused(rope: str, code: str) -> None:
     with pytest.raises(SpecError) as error:
         solved(winch(rope, "{duration: 8, samples: 3}"))
     assert {problem.code for problem in error.value.problems} == {code}
+
+
+def test_a_blow_passes_a_rope_by_and_each_cause_has_its_share() -> None:
+    """A weight on a jib's rope is struck: it alone is moved; the rope is a cause, whose pulls add up with the others."""
+    text = f"""
+heun: 1
+space: planar
+gravity: [0, -{G}]
+ground: {{points: {{O: [0, 0], P: [0, 0.1]}}}}
+bodies:
+  jib: {{shapes: [{{type: rod, from: [0, 0], to: [2, 0], mass: 3}}], points: {{root: [0, 0], tip: [2, 0]}}}}
+  weight: {{mass: 5, center: [0, 0], inertia: 1, position: [2.1, -1], points: {{top: [0, 0]}}}}
+joints: {{root: {{type: weld, from: ground.O, to: jib.root}}}}
+couplings:
+  rope: {{type: rope, through: [ground.P, {{sheave: jib.tip, radius: 0.1, side: over}}, weight.top], stiffness: 3e3}}
+sections: {{middle: {{body: jib, at: [1, 0, 0], normal: [1, 0, 0]}}}}
+impulses: {{kick: {{on: weight.top, vector: [0, 5], time: 0.1}}}}
+analysis: {{duration: 0.2, samples: 5}}
+"""
+    results = solved(text, wanted=frozenset({"motion", "foundation", "joints", "sections", "shares", "impulses"}))
+    (struck,) = results.impulses
+    assert struck["bodies"]["weight"]["center_velocity_jump"] == pytest.approx([0.0, 1.0, 0.0], abs=1e-12)
+    assert struck["couplings"]["rope"]["tension"] == 0.0
+    T, section = results.couplings["rope"]["tension"], results.sections["middle"]
+    for whole in (results.joints["root"], section, results.foundation):
+        parts = sum(own["force"] for own in whole["shares"].values())
+        assert parts == pytest.approx(whole["force"], abs=1e-9)
+    assert section["shares"]["rope"]["direct_force"][:, 0] == pytest.approx(-T, abs=1e-9)
+    assert T.max() > 5 * G
