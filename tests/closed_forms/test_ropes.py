@@ -204,6 +204,10 @@ analysis: {{duration: 2, samples: 5}}
     assert results.couplings["hoist"]["tension"] == pytest.approx(pull, rel=1e-9)
     assert results.energy["work"] == pytest.approx(pull * 0.5 * np.linspace(0.0, 2.0, 5) ** 2, abs=1e-6)
     assert results.accuracy["energy_drift"] <= 1e-11
+    stands, told = results.foundation["elements"]["hoist"], results.couplings["hoist"]["on"]["ground"]
+    lever = np.cross(stands["point"] - told["point"], stands["force"])
+    assert stands["force"] == pytest.approx(told["force"], abs=1e-9)  # two of its strands run from ground to ground
+    assert stands["moment"] + lever == pytest.approx(told["moment"], abs=1e-8)
 
 
 def test_a_slack_rope_is_drawn_in_and_catches() -> None:

@@ -21,7 +21,7 @@ from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import central_axis, total
 from heuncli.kinetostatics.joint_axes import in_axes
@@ -115,7 +115,7 @@ class LoadErrors:
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
         if "energy" in self.compared:
-            self.add_energy(several, states, loads)
+            self.add_energy(several, states)
         if "motion" in self.compared:
             self.add_motion(states)
 
@@ -149,7 +149,8 @@ class LoadErrors:
         if self.by_cause:
             from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
 
-            for kind, name, values, more in compared_shares(self.setup, several, states, applied, self.compared, terms):
+            pushing = [*applied, *rope_actions(couplings)]
+            for kind, name, values, more in compared_shares(self.setup, several, states, pushing, self.compared, terms):
                 F, M = (rounding * more for rounding in terms.rounding)
                 rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
                 self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
@@ -275,9 +276,9 @@ class LoadErrors:
                 turn = turned * lengths(both[0::count])
                 self.take(("sections", quantity), both, rounding, of, turn)
 
-    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_energy(self, several: Recovered, states: BodyStates) -> None:
         """Kinetic and potential energy, and work."""
-        block = energy(self.setup.scene.layout, several, states, loads)
+        block = energy(self.setup.scene.layout, several, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
