@@ -314,8 +314,15 @@ ESTIMATES = {
     "couplings": "reactions", "sections": "sections", "energy": "energy",
 }  # fmt: skip
 # of which estimate those errors are that have none of their own
-KIND_OF = {"forces": "reactions", "axis": "foundation", "attitudes": "motion", "rodrigues": "motion"}
+KIND_OF = {
+    "forces": "reactions",
+    "axis": "foundation",
+    "attitudes": "motion",
+    "rodrigues": "motion",
+    "strains": "motion",
+}
 ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
+OF_A_LOAD = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
 AT_A_BLOW = {"N": "N·s", "N·m": "N·m·s"}  # units of the loads in `impulses`
@@ -432,7 +439,7 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     if kind == "foundation" and name == "axis":
         return "axis"
     if kind == "forces":
-        return "motion" if number in ("length", "angle", "rate", "shift", "turn") else "forces"
+        return OF_A_LOAD.get(number, "forces")
     if number.startswith("energy_"):
         return "energy"
     if kind == "bodies" and number in ATTITUDES:

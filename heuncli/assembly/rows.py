@@ -18,11 +18,10 @@ from heuncli import tolerances
 from heuncli.assembly.conditions import Ask, JointCondition, on_tangent
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.shapes.rotations import cross, hat, to_vector
+from heuncli.shapes.rotations import cross, inverse_jacobian, to_vector
 
 NOTHING = np.zeros((0, 3))
 NONE = np.zeros(0)
-SERIES = 1e-4  # [rad] below it the first term of a series is exact and the closed form cancels
 NEARLY_OPPOSITE = -0.99  # cosine: beyond, the turn's own bend would outweigh what closes it
 
 
@@ -70,22 +69,13 @@ def _turn_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:
     """T and minus the gap: the vector of the smallest turn that is missing, so opposite axes are far from closed."""
     if d.pose.turn == "all":
         phi = to_vector(Ra.T @ Rb @ d.relative.T)
-        return _inverse_jacobian(phi) @ Ra.T, -phi
+        return inverse_jacobian(phi) @ Ra.T, -phi
     if d.pose.turn == "axis":
         return _axis_gap(d, Ra, Rb)
     if d.pose.turn == "square":
         n, m = Ra @ d.axis, Rb @ d.to_axis
         return cross(m, n)[None, :], np.array([-(n @ m)])
     return NOTHING, NONE
-
-
-def _inverse_jacobian(phi: Array) -> Array:
-    """d phi = this @ w dt, for exp(phi) turned on by w (fixed axes), (3, 3)."""
-    angle2 = float(phi @ phi)
-    angle = math.sqrt(angle2)
-    factor = 1.0 / 12.0 if angle < SERIES else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
-    V = hat(phi)
-    return np.eye(3) - 0.5 * V + factor * (V @ V)
 
 
 def _axis_gap(d: JointCondition, Ra: Array, Rb: Array) -> tuple[Array, Array]:

@@ -4,7 +4,11 @@ V, A: of the speeds and accelerations of a load's two points together; Omega, Al
 
     |l - chord| <= (A + V^2 / l) T^2 / 8,  |l'| <= V
     |d - chord| <= (A + (Alpha + Omega^2) L + 2 Omega V) T^2 / 8,  |d'| <= V + Omega L
-    |phi - nearer end| <= pi/2 (Omega_a + Omega_b) T / 2         for |J^-1| = (theta/2) / sin (theta/2) <= pi/2
+    |phi - chord| <= (pi/2 (Alpha_a + Alpha_b + Omega_a Omega_b) + K pi/2 (Omega_a + Omega_b)^2) T^2 / 8
+    |phi'| <= pi/2 (Omega_a + Omega_b)
+phi: a rotation vector of less than half a turn, phi' = J^-1 omega, omega = R_a' (omega_b - omega_a). There
+|J^-1| = (theta/2) / sin (theta/2) <= pi/2. Of J^-1 = 1 - [phi]/2 + f (n n' - 1), f = 1 - (theta/2) cot (theta/2), the
+change along a unit step of phi is not above 1/2 + f' + 2 f / theta, which is 1/2 + pi/4 + 2/pi < K at half a turn.
 """
 
 from __future__ import annotations
@@ -25,6 +29,7 @@ if not cython.compiled:
     from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
 
 QUARTER_TURN = 1.5707963267948966
+STEEPEST = 1.93  # K
 
 
 def load_at_end(
@@ -80,9 +85,14 @@ def range_of_load(
         bend = 0.125 * A * T * T
         second = Bounds(-A, A)
     else:
-        fastest = QUARTER_TURN * (spin_of(points, load.a) + spin_of(points, load.b))
-        bend = 0.5 * fastest * T
+        spin_a: cython.double = spin_of(points, load.a)
+        spin_b: cython.double = spin_of(points, load.b)
+        fastest = QUARTER_TURN * (spin_a + spin_b)
+        A = QUARTER_TURN * (twist_of(points, load.a) + twist_of(points, load.b) + spin_a * spin_b)
+        A = A + STEEPEST * fastest * (spin_a + spin_b)
+        bend = 0.125 * A * T * T
         open_by = 8.0 * scene.limits.rounding
+        second = Bounds(-A, A)
     rate: Bounds = Bounds(-fastest, fastest)
     if rates and variable.is_rate:
         return Span(value, second, anything())

@@ -56,6 +56,7 @@ def scene_of(
     number = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     kinds = Topologies()
     bodies = [_body(body, results, kinds) for body in machine.bodies]
+    order = {joint.name: k for k, joint in enumerate(machine.joints)}
     belts = {belt.name for belt in machine.belts}
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
     return {
@@ -79,7 +80,10 @@ def scene_of(
         ],
         "ropes": [_rope(rope, poses, number) for rope in machine.ropes],
         "marks": [_mark(mark, poses) for mark in machine.marks],
-        "symbols": {mark.symbol: _symbol(mark.symbol) for mark in machine.marks},
+        "acting": [
+            {"joint": order[own.joint], "symbols": own.symbols, "slides": own.slides} for own in machine.acting
+        ],
+        "symbols": {name: _symbol(name) for name in sorted(_symbols(machine))},
         "ground": [{"name": name, "at": _triple(point)} for name, point in machine.grounded.items()],
         "gravity": _triple(np.array(spec.gravity)),
         "pulls": [_pull(pull, belts) for pull in coupled_pulls(machine, poses, results.couplings)],
@@ -156,6 +160,11 @@ def _pull(pull: CoupledPull, belts: Collection[str]) -> dict[str, Any]:
     belt = pull.name in belts
     told = {"row": f"couplings.{pull.name}.{'tight' if belt else f'on.{pull.on}.force'}", "at": drawn(pull.places)}
     return {"name": pull.name, "on": pull.on, **told, "forces": drawn(pull.forces) if belt else None}
+
+
+def _symbols(machine: Machine) -> set[str]:
+    """The symbols that a page draws as they are in pictures."""
+    return {mark.symbol for mark in machine.marks} | {name for own in machine.acting for name in own.symbols}
 
 
 def _symbol(name: str) -> list[dict[str, Any]]:

@@ -1,4 +1,4 @@
-/** @file What runs over the machine: belts, ropes over sheaves; and marks: stops, latches, the ground under a wheel. */
+/** @file What runs over the machine: belts, ropes; and symbols: stops, latches, the ground, what acts in joints. */
 
 import { points, stands } from "./poses.js";
 import { polyline, shape, words } from "./strokes.js";
@@ -8,6 +8,7 @@ const STEP = 0.1; // rad: of an arc as it is drawn
 const DASHES = 14; // in the scene's radius: by which it is seen that a rope runs
 const GAP = 0.16; // of a dash
 const WIDTH = 2;
+const SIDE = 0.2; // of a direction that is seen: what shows less of it has no side on the screen
 
 /** A number of a list, or between those of two frames. */
 function between(values, width, i, { frame, share }) {
@@ -82,19 +83,32 @@ export function drawRope(pen, view, poses, rope, shown, colours) {
 /** When a mark is looked at: one that stands still is told once. */
 const whenOf = (mark, shown) => (mark.places.length > 3 ? shown : { frame: 0, share: 0 });
 
-/** A symbol at its place, its x along its direction; none where that points at the eye. */
-export function drawMark(pen, view, parts, mark, shown, colours) {
-  const at = whenOf(mark, shown);
-  const [x, y] = view.project(placeOf(mark.places, 3, 0, at));
-  const [a, b] = view.direct(unit(placeOf(mark.ways, 3, 0, at)));
-  const size = Math.hypot(a, b);
-  if (!(size > 0.2 * view.scale)) return;
-  const [u, v] = [a / size, b / size];
+/** A symbol about a place on the screen, its x along a direction there, of unit length. */
+function drawSymbol(pen, parts, [x, y], [u, v], colours) {
   for (const part of parts) {
     const corners = part.points.map(([p, q]) => [x + p * u + q * v, y + p * v - q * u]);
     if (part.closed) shape(pen, corners, part.fill ? colours[part.fill] : "transparent", colours.ink, 1.3);
     else polyline(pen, corners, colours.ink, 1.3);
   }
+}
+
+/** A mark at its place, its symbol's x along its direction; none where that points at the eye. */
+export function drawMark(pen, view, parts, mark, shown, colours) {
+  const at = whenOf(mark, shown);
+  const [a, b] = view.direct(unit(placeOf(mark.ways, 3, 0, at)));
+  const size = Math.hypot(a, b);
+  if (size > SIDE * view.scale)
+    drawSymbol(pen, parts, view.project(placeOf(mark.places, 3, 0, at)), [a / size, b / size], colours);
+}
+
+/** What acts in a joint, or drives it: which way it turns is seen from the side that its axis points to. */
+export function drawActing(pen, view, poses, scene, own, colours) {
+  const joint = scene.joints[own.joint];
+  const [a, b, near] = view.direct(unit(points(poses, joint.a, joint.axis)));
+  const size = Math.hypot(a, b);
+  const along = own.slides && size > SIDE * view.scale ? [a / size, b / size] : [1, 0];
+  const at = view.project(stands(poses, joint.b, joint.q));
+  drawSymbol(pen, scene.symbols[own.symbols[near < 0 ? 1 : 0]], at, along, colours);
 }
 
 /** The name of a mark that has one, beside it. */

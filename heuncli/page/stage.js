@@ -7,7 +7,7 @@ import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { words } from "./strokes.js";
-import { drawBelt, drawMark, drawRope, nameMark } from "./running.js";
+import { drawActing, drawBelt, drawMark, drawRope, nameMark } from "./running.js";
 import { drawCorner, drawGroundPoint, drawJoint, drawLine, drawPath } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 
@@ -62,6 +62,7 @@ export function drawMachine(canvas, data, view, shown, colours) {
   for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, shown, colours);
   if (shown.names) for (const mark of scene.marks) nameMark(pen, view, mark, shown, colours);
   const small = scene.joints.length > MANY;
+  for (const own of small ? [] : scene.acting) drawActing(pen, view, poses, scene, own, colours);
   for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);
   if (shown.load)
     drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);

@@ -12,11 +12,12 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
-from heuncli.joint_kinds import JOINTS, TYPES, Kind
+from heuncli.joint_kinds import TYPES, Kind
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
 from heuncli.records import record
 from heuncli.results import Array
+from heuncli.scenery.acting import kind_in
 from heuncli.scenery.machine import BodyLook, JointLook, LineLook, Machine
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, silhouette, solid_of
@@ -196,8 +197,7 @@ def joints(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
 
 def kind_of(joint: JointLook, spec: Spec) -> Kind:
     """What a joint is, in a scene declared planar, too."""
-    kind = TYPES[joint.kind]
-    return JOINTS[kind.planar] if spec.space == "planar" and kind.planar is not None else kind
+    return kind_in(spec, joint.kind)
 
 
 def turning(kind: Kind) -> str:
@@ -309,25 +309,15 @@ def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin
 def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     """What drives joints, and what acts in them."""
     looks = {look.name: look for look in stood.machine.joints}
-    acting = [(drive.joint, drive.name, "drive", DRIVEN) for drive in stood.spec.drives.values()]
-    for name, force in stood.spec.forces.items():
-        if force.type in ("torque", "turn_spring", "motor"):
-            acting.append((force.joint, name, force.type, APPLIED))
-    for joint_name, name, what, pen in acting:
-        look = looks[joint_name]
-        kind = kind_of(look, stood.spec)
-        if kind.keeps_distance:
-            continue
-        axis = way_along(stood, look, k) if kind.follows_path else look.axis
+    for own in stood.machine.acting:
+        look = looks[own.joint]
+        axis = way_along(stood, look, k) if stood.spec.joints[look.name].path else look.axis
         axis = axis / np.linalg.norm(axis)
         seen = stood.seen_along(look.a, axis, k)
-        symbol, along = "coil", (1.0, 0.0)
-        if what != "turn_spring":
-            slides = kind.follows_path or (bool(kind.shifts) and kind.turn.asks == "all")
-            symbol = "turning" if stood.sense(look.a, axis, k) >= 0.0 else "turning back"
-            symbol = "sliding" if slides else symbol
-            along = (float(seen[0]), float(seen[1])) if slides and seen.any() else along
-        yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, pen, f"{name}: {what} in {joint_name}")
+        symbol = own.symbols[int(stood.sense(look.a, axis, k) < 0.0)]
+        along = on_paper(seen) if own.slides and seen.any() else (1.0, 0.0)
+        told = f"{own.name}: {own.what} in {own.joint}"
+        yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, APPLIED, told)
 
 
 def way_along(stood: Stood, look: JointLook, k: int) -> Array:

@@ -37,7 +37,7 @@ TEETH = 9  # arrows of a distributed load
 DIGITS = 3  # of these values
 KINDS = (
     (JOINTS_PEN, "of joints, from ON to"),
-    (COUPLED_PEN, "of couplings, ON what they move"),
+    (COUPLED_PEN, "of couplings"),
     (APPLIED_PEN, "applied"),
 )
 

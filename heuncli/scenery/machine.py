@@ -13,6 +13,7 @@ import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
+from heuncli.scenery.acting import ActingLook, acting_of
 from heuncli.scenery.discs import Disc
 from heuncli.scenery.elements import ElementLooks, elements_of
 from heuncli.scenery.marks import Mark, marks_of
@@ -74,7 +75,7 @@ class LineLook(NamedTuple):
 class Machine(NamedTuple):
     """All of a scene; grounded: points of the ground; paths: lines on it, along which points run, and circles.
 
-    belts, ropes, marks: what moves otherwise than one body does; marks: symbols that stand somewhere.
+    belts, ropes: what moves otherwise than one body does; marks: symbols that stand somewhere; acting: in joints.
     """
 
     title: str
@@ -86,6 +87,7 @@ class Machine(NamedTuple):
     belts: tuple[BeltLook, ...] = ()
     ropes: tuple[RopeLook, ...] = ()
     marks: tuple[Mark, ...] = ()
+    acting: tuple[ActingLook, ...] = ()
 
 
 def machine_of(spec: Spec, faces: int = ROUND, scene: PreparedScene | None = None) -> Machine:
@@ -106,7 +108,8 @@ def machine_of(spec: Spec, faces: int = ROUND, scene: PreparedScene | None = Non
     bodies = tuple(_body(name, spec, (joints, lines), elements, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
     paths = (*elements.lines.get(GROUND, ()), *(disc.rim for disc in elements.discs.get(GROUND, ())))
-    found = Machine(spec.title, bodies, joints, lines, grounded, paths, elements.belts)
+    acting = tuple(acting_of(spec))
+    found = Machine(spec.title, bodies, joints, lines, grounded, paths, elements.belts, acting=acting)
     if scene is None:
         return found
     ropes = ropes_of(scene.mechanism)

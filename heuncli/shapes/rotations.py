@@ -9,6 +9,8 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.results import Array
 
+SERIES = 1e-4  # [rad] below it the first term of a series is exact and the closed form cancels
+
 
 def hat(a: Array) -> Array:
     """Matrix of the cross product, (3, 3): hat(a) @ b = a x b."""
@@ -37,6 +39,15 @@ def from_vector(turn: Array) -> Array:
 def to_vector(R: Array) -> Array:
     """Axis * angle of a rotation, (3,) [rad], angle in [0, pi]."""
     return vector_of_quaternion(to_quaternion(R))
+
+
+def inverse_jacobian(phi: Array) -> Array:
+    """d phi = this @ w dt, for exp(phi) turned on by w (fixed axes), (3, 3)."""
+    angle2 = float(phi @ phi)
+    angle = math.sqrt(angle2)
+    factor = 1.0 / 12.0 if angle < SERIES else (1.0 - 0.5 * angle / math.tan(0.5 * angle)) / angle2
+    V = hat(phi)
+    return np.eye(3) - 0.5 * V + factor * (V @ V)
 
 
 def to_quaternion(R: Array) -> Array:

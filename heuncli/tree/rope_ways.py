@@ -156,7 +156,7 @@ def unit(a: Array) -> Array:
 def refused(name: str, k: int | None, code: str, message: str, hint: str) -> SolveError:
     """The error of a rope, or of one of its places."""
     path = f"couplings.{name}" if k is None else f"couplings.{name}.through.{k}"
-    return SolveError(Problem(code, f"{path}: {message}", None, hint, path))
+    return SolveError(Problem(code, message, None, hint, path))
 
 
 # Which way it runs
@@ -211,6 +211,7 @@ def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> RopeWay:
             message = "the axes of this sheave and of the one before are not parallel, so that no strand lies in both"
             hint = "a plain point between them, or in place of one of them"
             raise refused(name, k + 1, "rope-askew", message, hint)
+    require_apart(name, stays)
     open_ = [k for k, x in enumerate(stays) if x.radius and x.given.side not in ("left", "right")]
     if len(open_) > MOST_SIDES:
         message = f"past which sides of {len(open_)} sheaves the rope runs is not said"
@@ -234,6 +235,28 @@ def way_round(mechanism: Mechanism, name: str, stays: list[Stay]) -> RopeWay:
         message = "past which side of this sheave the rope runs is not said, and both are as short"
         raise refused(name, k, "rope-side", message, f"side: over, under, {SIDES}")
     return found[0]
+
+
+def require_apart(name: str, stays: Sequence[Stay]) -> None:
+    """Raise SolveError where one place of a rope lies on, or within, the sheave before it or behind it."""
+    for k, (a, b) in enumerate(pairwise(stays)):
+        sheave, inner, at = (a, b, k + 1) if a.radius >= b.radius else (b, a, k)
+        D = inner.place - sheave.place
+        off = D - (D @ sheave.normal) * sheave.normal
+        distance = float(np.sqrt(off @ off))
+        if sheave.radius and distance <= (sheave.radius - inner.radius) * (1.0 + tolerances.ON_AXIS):
+            own = f"this sheave of radius {inner.radius:.6g} m" if inner.radius else "this point"
+            where = "before" if sheave is a else "behind"
+            message = (
+                f"{own} stands {distance:.6g} m from the axis of the sheave {where} it, of radius {sheave.radius:.6g} "
+                "m: no strand leads there"
+            )
+            hint = (
+                "move it out of the sheave; what is wound on a sheave ends with the sheave itself, with slip: none"
+                if at in (0, len(stays) - 1)
+                else "move one of them, or make the sheave smaller"
+            )
+            raise refused(name, at, "rope-side", message, hint)
 
 
 def up_in(mechanism: Mechanism) -> Array:

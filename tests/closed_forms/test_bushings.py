@@ -175,3 +175,21 @@ def stretches(low: float, high: float, table: dict[str, Any]) -> tuple[np.ndarra
     x, w = np.polynomial.legendre.leggauss(4)
     h = 0.5 * np.diff(ends)[:, None]
     return (ends[:-1, None] + h * (1.0 + x)).ravel(), (h * w).ravel()
+
+
+def test_a_turn_that_leaves_its_table_is_told_by_its_place() -> None:
+    """A moment beyond the last value of the table: the run ends where the turn is the last that it covers."""
+    with pytest.raises(SolveError) as refused:
+        solved("""
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+tables: {k: {x: [-0.5, 0, 0.5], y: [-2, 0, 2]}}
+bodies: {block: {mass: 1, center: [0, 0, 0], inertia: [0.01, 0.01, 0.01], points: {o: [0, 0, 0]}}}
+forces:
+  mount: {type: bushing, from: ground.O, to: block.o, stiffness: 1e3, turning: [9, 9, k], turning_damping: 0.05}
+  push: {type: couple, on: block.o, vector: [0, 0, 3]}
+analysis: {duration: 1, samples: 3}
+""")
+    (problem,) = refused.value.problems
+    assert problem.code == "no-value"
+    assert "forces.mount.turn_z = 0.5: the table k covers x from -0.5 to 0.5" in problem.message

@@ -342,3 +342,23 @@ def test_a_rope_that_a_blow_would_have_to_push_is_told_by_its_place() -> None:
     with pytest.raises(SolveError, match="the rope hoist would have to push") as refused:
         solved(roped_cage(-9.81, blow))
     assert refused.value.problems[0].about == "couplings.hoist"
+
+
+def test_a_law_that_jerks_a_taut_rope_is_told() -> None:
+    """With restitution, which lets it go slack; without, it holds through the jump."""
+    scene = roped_cage(-9.81, "analysis: {duration: 1, samples: 3}")
+    law = 'length: "9 - 0.5*max(t - 0.2, 0)", tension_only: true'
+    with pytest.raises(SolveError, match="the rate of the length of hoist jumps from 0 to -0.5 m/s") as refused:
+        solved(scene.replace("tension_only: true", f"{law}, restitution: 0"))
+    assert refused.value.problems[0].code == "rope-jerked"
+    assert solved(scene.replace("tension_only: true", law)).impulses[0]["energy_jump"] == pytest.approx(0.5 * 9 * 0.25)
+
+
+@pytest.mark.parametrize(("x", "where"), [(0.3, 0.3), (0.1, 0.1)])
+def test_an_end_that_lies_on_its_sheave_is_told(x: float, where: float) -> None:
+    text = atwood("free").replace("through: [a.top, {", f"through: [{{body: sheave, at: [{x}, 0]}}, {{")
+    with pytest.raises(
+        SolveError, match=f"this point stands {where:g} m from the axis of the sheave behind"
+    ) as refused:
+        solved(text)
+    assert refused.value.problems[0].about == "couplings.rope.through.0"

@@ -1,7 +1,7 @@
-"""Random gear trains: coaxial wheels, planets on an arm, more meshes than there are wheels to hold.
+"""Random gear trains: coaxial wheels, planets on an arm, more meshes than there are wheels to hold, all in mesh.
 
-Wheels turn at rates that are drawn first; every pair meshes where these let it. So whatever meshes closes, and what
-is held twice is held alike.
+Wheels turn at rates that are drawn first; every pair meshes where these let it roll. So whatever meshes closes, and
+what is held twice is held alike.
 """
 
 from __future__ import annotations

@@ -29,6 +29,7 @@ from heuncli.records import record, replace
 from heuncli.response import Blows as Answered
 from heuncli.response import Columns, blows
 from heuncli.results import Array, Mask
+from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
 AT_ONCE = 16  # events at one instant, and four a contact: more follow each other without end
@@ -82,6 +83,21 @@ def require_energy(jump: Jump, terms: float) -> None:
         raise SolveError(
             Problem("blow-unbalanced", message, None, "a singular pose, or contacts that hardly differ", jump.names[0])
         )
+
+
+def require_smooth(layout: Layout, given: GivenBlow, closed: Mask) -> None:
+    """Raise SolveError for a rope that may go slack, and is taut where the rate of its length jumps."""
+    for k, contact in enumerate(layout.contacts):
+        if closed[k] and contact.is_rope and contact.joint in given.drives:
+            first, then = given.drives[contact.joint]
+            message = (
+                f"at t = {given.after:.9g} s the rate of the length of {contact.name} jumps from {first:.6g} to "
+                f"{then:.6g} m/s while it is taut: as it may go slack, how it leaves that jump is not solved"
+            )
+            hint = (
+                "lead the rate over in a short time, as max(t - 0.2, 0)**2; or leave out restitution: it holds through"
+            )
+            raise SolveError(Problem("rope-jerked", message, None, hint, layout.mechanism.owner(contact.joint)))
 
 
 def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, catches: list[Catch], t: float) -> None:
@@ -138,6 +154,7 @@ class Contacts:
         own numbers where it is not told.
         """
         latches, closed = self.latches, self.holding > 0.0
+        require_smooth(self.layout, given, closed)
         said = said or latches.freely(given.before, state)
         released = latches.let_go(said)
         sides = right_sides(self.evaluator, given, state, latches.holding())

@@ -14,10 +14,13 @@ from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFu
 from heuncli.integration.diagnosis.ways import Moving, along_cut_paths, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import BushingLoad, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
+from heuncli.results import Array
+from heuncli.shapes.rotations import cross_rows, inverse_jacobian
 from heuncli.tree.layout import Layout
+from heuncli.tree.tables import Table
 
 # An expression may lose its value only just after t: instants from 2**-52 to 2**-20 of the run's length later.
 NEAREST, FARTHEST = 52, 20
@@ -41,6 +44,8 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
         coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
     for load, rows in layout.mechanism.load_rows():
         coordinates |= acted_between(load, recovered.loads[instant, rows])
+        if isinstance(load, BushingLoad):
+            coordinates |= strains(layout, load, rows.start, recovered, instant)
     return coordinates
 
 
@@ -50,12 +55,38 @@ def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     if isinstance(load, PairLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
-    if not isinstance(load, BushingLoad):
-        return {}
-    parts = (("shift", rows["strain"][0]), ("turn", rows["strain"][1]))
+    return {}
+
+
+def strains(layout: Layout, load: BushingLoad, first: int, recovered: Recovered, instant: int) -> Moving:
+    """The shift and the turn of a bushing with their rates, in its own axes; first: its row of the kernel's loads."""
+    bodies, row = recovered.bodies[instant], layout.tables["loads"][first]
+    (x_a, v_a, R_a, omega_a), (x_b, v_b, _, omega_b) = (
+        point_of(bodies, int(row[body]), vector(row[point])) for body, point in (("a", "p"), ("b", "q"))
+    )
+    axes = R_a @ load.frame
+    shift, turn = (np.array(vector(own)) for own in recovered.loads[instant, first : first + 2]["strain"])
+    slip = axes.T @ (v_b - v_a - cross_rows(omega_a, x_b - x_a))
+    turning = inverse_jacobian(turn) @ axes.T @ (omega_b - omega_a)
     return {
-        (name, f"{of}_{axis}"): (float(x), 0.0) for of, strain in parts for axis, x in zip("xyz", strain, strict=True)
+        (f"{LOADS}.{load.name}", f"{of}_{axis}"): (float(x), float(rate))
+        for of, strain, rates in (("shift", shift, slip), ("turn", turn, turning))
+        for axis, x, rate in zip("xyz", strain, rates, strict=True)
     }
+
+
+def vector(own: Any) -> Array:
+    """A vector of the kernel's tables."""
+    return np.array(own.tolist())
+
+
+def point_of(bodies: Table, body: int, arm: Array) -> tuple[Array, Array, Array, Array]:
+    """Of a body's point, or the ground's: place, velocity; of the body attitude and angular velocity."""
+    if body == GROUND:
+        return arm, np.zeros(3), np.eye(3), np.zeros(3)
+    own = bodies[body]
+    turned = own["R"] @ arm
+    return own["r"] + turned, own["v"] + cross_rows(own["omega"], turned), own["R"], own["omega"]
 
 
 def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Moving) -> list[Problem]:

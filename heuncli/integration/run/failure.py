@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from heuncli.errors import Problem, SolveError
@@ -9,11 +11,30 @@ from heuncli.expressions.programs import Expression
 from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
-from heuncli.integration.diagnosis.ways import ways_left
+from heuncli.integration.diagnosis.ways import Moving, ways_left
+from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
 from heuncli.integration.run.progress import Progress
 from heuncli.mechanism.model import BushingLoad
+
+
+class Ended:
+    """Where a run has ended, answered once for all that ask."""
+
+    def __init__(self, progress: Progress) -> None:
+        self.progress, self.t, self.scene = progress, progress.t, progress.scene
+        self.mechanism = progress.scene.layout.mechanism
+
+    @cached_property
+    def recovered(self) -> Recovered:
+        """The answers there."""
+        return self.scene.recovered(np.array([self.t]), self.progress.state[None, :])
+
+    @cached_property
+    def coordinates(self) -> Moving:
+        """What expressions use, there."""
+        return coordinates_at(self.scene.layout, self.recovered, 0)
 
 
 def failure(progress: Progress, code: int) -> SolveError:
@@ -27,48 +48,45 @@ def failure(progress: Progress, code: int) -> SolveError:
         itself = progress.moving.layout is scene.layout
         return half_turn(progress.moving, loop.half_turn, t, progress.integrated_state, itself=itself)
     name, message, hint = TROUBLE[code]
+    ended = Ended(progress)
     if name == "closure-lost":
-        if known := ways_ended(progress) or turned_bushings(progress) or loads_ended(progress):
+        if known := ways_ended(ended) or turned_bushings(ended) or loads_ended(ended):
             return SolveError(*known)
         problem = Problem(name, f"at t = {t:.9g} s: {message}", hint=hint)
         return ClosuresLost(problem, passed=progress.passed, failed=t, last=progress.last)
-    return without_acceleration(progress, name, message, hint)
+    return without_acceleration(ended, name, message, hint)
 
 
-def ways_ended(progress: Progress) -> list[Problem]:
+def ways_ended(ended: Ended) -> list[Problem]:
     """The problems of points that have run off their paths there, and of cams that have turned off their lifts.
 
     No closed chain has to be looked at for them, though one that hangs on them is lost with them.
     """
-    t, scene, mechanism = progress.t, progress.scene, progress.scene.layout.mechanism
+    mechanism = ended.mechanism
     on_cams = any(coupling.given.type == "cam" for coupling in mechanism.couplings)
     if not on_cams and all(joint.path is None for joint in mechanism.joints):
         return []
-    there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
-    return ways_left(mechanism, t, progress.last * 2.0**-FARTHEST, there)
+    return ways_left(mechanism, ended.t, ended.progress.last * 2.0**-FARTHEST, ended.coordinates)
 
 
-def loads_ended(progress: Progress) -> list[Problem]:
+def loads_ended(ended: Ended) -> list[Problem]:
     """The problems of loads that lose their values there while couplings are held: their rows cannot answer them."""
-    t, scene = progress.t, progress.scene
-    if not scene.layout.mechanism.couplings:
+    if not ended.mechanism.couplings:
         return []
-    there = coordinates_at(scene.layout, scene.recovered(np.array([t]), progress.state[None, :]), 0)
-    return without_value(scene.layout.mechanism, t, progress.last, there)
+    return without_value(ended.mechanism, ended.t, ended.progress.last, ended.coordinates)
 
 
-def without_acceleration(progress: Progress, name: str, message: str, hint: str) -> SolveError:
+def without_acceleration(ended: Ended, name: str, message: str, hint: str) -> SolveError:
     """An expression without a value there, else one that grows without bound, else what the kernel's code means."""
-    t, state, scene = progress.t, progress.state, progress.scene
-    mechanism, recovered = scene.layout.mechanism, scene.recovered(np.array([t]), state[None, :])
-    problems = without_value(mechanism, t, progress.last, coordinates_at(scene.layout, recovered, 0))
+    progress, t, scene, mechanism = ended.progress, ended.t, ended.scene, ended.mechanism
+    problems = without_value(mechanism, t, progress.last, ended.coordinates)
     if not problems and mechanism.rubbing:
         problems = jammed_beyond(mechanism, progress.moving.workspace, t)
-    problems = problems or turned_bushings(progress)
-    problems = problems or growing(scene, t, state, progress.passed)
+    problems = problems or turned_bushings(ended)
+    problems = problems or growing(scene, t, progress.state, progress.passed)
     if problems:
         return SolveError(*problems)
-    hint = "; ".join(filter(None, [hint, largest_load(mechanism, recovered)]))
+    hint = "; ".join(filter(None, [hint, largest_load(mechanism, ended.recovered)]))
     hangs = scene.layout.spanning.hangs
     light = sorted({f"bodies.{mechanism.bodies[hangs[i].body].name}" for i in scene.layout.tables["lents"]["body"]})
     if light and name == "step-collapsed":
@@ -76,15 +94,13 @@ def without_acceleration(progress: Progress, name: str, message: str, hint: str)
     return SolveError(Problem(name, f"at t = {t:.9g} s: {message}", hint=hint))
 
 
-def turned_bushings(progress: Progress) -> list[Problem]:
+def turned_bushings(ended: Ended) -> list[Problem]:
     """Those by which a run ends, of whatever it is that fails there: by their moment, which jumps."""
-    scene = progress.scene
-    if not any(isinstance(load, BushingLoad) for load in scene.layout.mechanism.loads):
+    if not any(isinstance(load, BushingLoad) for load in ended.mechanism.loads):
         return []
     from heuncli.integration.diagnosis.turned_bushings import at_half_turn
 
-    recovered = scene.recovered(np.array([progress.t]), progress.state[None, :])
-    return at_half_turn(scene.layout.mechanism, recovered, 0)
+    return at_half_turn(ended.mechanism, ended.recovered, 0)
 
 
 def chattering(t: float, expression: Expression, branch: int) -> Problem:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
@@ -60,7 +61,8 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
             if own.friction is not None:
                 from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
 
-                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own)
+                none = tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"]
+                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own, none)
             if own.coupling.given.type == "cam":
                 from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
 

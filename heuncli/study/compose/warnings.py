@@ -84,7 +84,8 @@ def of_the_motion(setup: Setup, history: History) -> list[str]:
         goes = "this one goes on smoothly" if checked.horizon is None else "rounding decides which is followed"
         lines.append(f"passes through a singular pose at t = {at} s: another motion branches off there, {goes}")
     if checked.run.undecided:
-        lines.append(f"of {checked.run.undecided} steps it could not be decided what loads do between their stages")
+        steps = "one step" if checked.run.undecided == 1 else f"{checked.run.undecided} steps"
+        lines.append(f"of {steps} it could not be decided what loads do between their stages")
     if checked.run.stopped is not None:
         lines.append(f"stopped before the end: {status(history, setup.scene.mechanism)['message']}")
     return lines

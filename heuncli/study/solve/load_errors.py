@@ -160,7 +160,11 @@ class LoadErrors:
         for load in loads:
             self.take(("forces", "N"), load.action.force, F, terms.force)
             self.take(("forces", "N·m"), load.action.moment, M, terms.moment)
-            self.take(("forces", "W"), load.power, np.zeros(len(F)), terms.force)
+            none = np.zeros(len(F))
+            self.take(("forces", "W"), load.power, none, terms.force)
+            if load.strain is not None:
+                self.take(("strains", "m"), load.strain[:, 0], none, none)
+                self.take(("strains", "rad"), load.strain[:, 1], none, none)
 
     def add_motion(self, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach.
@@ -288,7 +292,7 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces")}
+        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains")}
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
