@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.model import path_of_load
+from heuncli.mechanism.model import ThreadLoad, path_of_load
 from heuncli.rest.coordinates import Coordinates
 from heuncli.rest.pose import Pose
 from heuncli.results import Array
@@ -36,7 +36,9 @@ def run_away(coordinates: Coordinates, passed: Array, far: Array) -> Problem:
             sentences[f"{name} slides on and on"] = None
     told = list(sentences)
     more = f" and {len(told) - MOST_NAMES} more" if len(told) > MOST_NAMES else ""
-    return no_rest(f"{', '.join(told[:MOST_NAMES])}{more}: nothing holds it", HOLDS)
+    rubs = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
+    hint = f"{HOLDS}; a self-locking thread creeps, and holds nothing at rest" if rubs else HOLDS
+    return no_rest(f"{', '.join(told[:MOST_NAMES])}{more}: nothing holds it", hint)
 
 
 def free_shifts(coordinates: Coordinates, number: int) -> Array:
