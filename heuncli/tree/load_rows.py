@@ -300,7 +300,7 @@ def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
         if e.constant is None and (e.held or key not in springy)
     ]
     conditions = (programs.at[id(condition.value)] for condition in mechanism.conditions)
-    return watched + [WatchRow(program, curved=0, condition=1) for program in conditions]
+    return watched + [WatchRow(program, curved=0, condition=1, load=-1) for program in conditions]
 
 
 def variable_rows(frame: LayoutFrame, mechanism: Mechanism, variables: Sequence[Variable]) -> list[VariableRow]:
