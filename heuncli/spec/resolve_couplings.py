@@ -154,7 +154,8 @@ def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
         length, law = law.constant, None
     elif law is not None:
         law = by.placed(law, f"couplings.{name}.length")
-    return c.Rope(through, length, entry.tension_only, entry.restitution, law)
+    stretching = entry.stiffness, entry.damping or 0.0
+    return c.Rope(through, length, entry.tension_only, entry.restitution, law, *stretching)
 
 
 def passage(by: Following, given: f.PassageEntry) -> c.Passage:

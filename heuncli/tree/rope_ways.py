@@ -70,7 +70,7 @@ class RopeWay:
 
 
 def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Coupling:
-    """A rope with its conditions."""
+    """A rope with its conditions; one that stretches with what a load pulls along."""
     rope = coupling.given
     assert isinstance(rope, spec.Rope)
     stays = [stay(mechanism, start, coupling.name, k, given) for k, given in enumerate(rope.through)]
@@ -85,6 +85,8 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
         elif rope.law is not None:
             length = 0.0  # the law tells all of it, and moves the start
         rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution, rope.law))
+    if rope.stretches:
+        return replace(coupling, stretched=rows[0])  # no sheave holds it
     return replace(coupling, rows=tuple(rows))
 
 
