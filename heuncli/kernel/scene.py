@@ -312,6 +312,7 @@ class Watch(Record):
     program: Program
     curved: int  # 1: the acceleration of a drive counts
     condition: int  # 1: its branches alone count
+    load: int  # of a bushing: the load of whose force or moment it is a part; -1: it is of none
 
     low: float  # what the stages of a step saw of it
     high: float

@@ -287,8 +287,15 @@ def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
     springy = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
     driven = {id(law.value): law.value for law in mechanism.laws}
     loads = {id(e): e for load in mechanism.loads for e in load.values}
+    parts = {
+        id(e): row
+        for load, rows in mechanism.load_rows()
+        if isinstance(load, BushingLoad)
+        for row, part in ((rows.start, load.shift), (rows.start + 1, load.turn))
+        for e in part.given
+    }
     watched = [
-        WatchRow(programs.at[key], curved=int(key in driven), condition=int(key in springy))
+        WatchRow(programs.at[key], int(key in driven), int(key in springy), load=parts.get(key, -1))
         for key, e in (loads | driven).items()
         if e.constant is None and (e.held or key not in springy)
     ]

@@ -210,6 +210,7 @@ class WatchRow:
     program: Program
     curved: int
     condition: int
+    load: int = -1
 
 
 @record

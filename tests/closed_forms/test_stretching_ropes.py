@@ -226,7 +226,7 @@ def test_refused(rope: str, code: str) -> None:
 
 
 def test_a_blow_passes_a_rope_by_and_each_cause_has_its_share() -> None:
-    """A weight on a jib's rope is struck: it alone is moved; the rope is a cause, whose pulls add up with the others."""
+    """A weight on a jib's rope is struck: it alone is moved; the rope is a cause, whose pulls add to the others."""
     text = f"""
 heun: 1
 space: planar
