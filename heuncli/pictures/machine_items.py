@@ -311,7 +311,7 @@ def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     looks = {look.name: look for look in stood.machine.joints}
     for own in stood.machine.acting:
         look = looks[own.joint]
-        axis = way_along(stood, look, k) if stood.spec.joints[look.name].path else look.axis
+        axis = way_along(stood, look, k) if kind_of(look, stood.spec).follows_path else look.axis
         axis = axis / np.linalg.norm(axis)
         seen = stood.seen_along(look.a, axis, k)
         symbol = own.symbols[int(stood.sense(look.a, axis, k) < 0.0)]

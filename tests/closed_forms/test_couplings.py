@@ -254,6 +254,20 @@ def test_a_blow_through_a_screw(order: list[str]) -> None:
         near(struck["joints"]["n"]["moment"][2], -thrust * by, 3, ROUNDING)
 
 
+def test_rest_many_turns_away() -> None:
+    """20 turns of a spindle, 1000 turns of a pinion, before a spring bears; what nothing holds is told by both."""
+    scene = screw() | {"analysis": {"type": "rest"}}
+    scene["joints"]["p"].pop("initial")
+    free, spring = to_yaml(scene), {"type": "torque", "joint": "n", "value": "-981*n.travel"}
+    near(solved({**scene, "forces": {"s": spring}}).coordinates["p"]["angle"], -20 * math.tau, 20 * math.tau, 1e-9)
+    with pytest.raises(SolveError, match="turns on and on, joints.n slides on and on: nothing holds it"):
+        solved(free)
+    train = pair(teeth=[10, 10000]) | {"analysis": {"type": "rest"}}
+    train["joints"]["p"].pop("initial")
+    train["forces"]["s"] = {"type": "turn_spring", "joint": "w", "stiffness": 5000 / math.tau, "angle": 0}
+    near(solved(train).coordinates["p"]["angle"], 1000 * math.tau, 1000 * math.tau, 1e-9)
+
+
 def test_modes_of_geared_shafts() -> None:
     """A spring of 50 N m/rad about the wheel's axis swings it with nine times the pinion's inertia."""
     scene = pair(teeth=[20, 60])
