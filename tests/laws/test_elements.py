@@ -89,7 +89,9 @@ def every_body_balances(scene: dict[str, Any], found: Results) -> None:
     read = model(weighed(scene))
     for k, t in enumerate(found.time):
         state = state_at(found.bodies, k)
-        loads = [push for parts in pushes(read, state, float(t)).values() for push in parts]
+        loads = [  # a belt's pretension is told with what it exerts
+            push for of, parts in pushes(read, state, float(t)).items() if of not in found.couplings for push in parts
+        ]
         for name, m in read.masses.items():
             c, s = state[name].point(m.center), found.bodies[name]["angular_velocity"][k]
             total = told_on(found, read, name, k, c)

@@ -71,12 +71,17 @@ def along_cut_paths(layout: Layout, state: Array, bodies: np.ndarray[Any, Any]) 
         joint = layout.mechanism.joints[k]
         if joint.path is None:
             continue
-        slope, seen = joint.path.at(float(state[at]))[1], _moved(layout, bodies, joint.b, joint.q, None)
-        v = seen[1] - _moved(layout, bodies, joint.a, joint.p, seen[0])[1]
+        seen, own = _moved(layout, bodies, joint.b, joint.q, None), _moved(layout, bodies, joint.a, joint.p, None)
+        D, v = seen[0] - own[0], seen[1] - _moved(layout, bodies, joint.a, joint.p, seen[0])[1]
         if joint.a != GROUND:
-            v = v @ bodies["R"][layout.place[joint.a]]
+            D, v = (x @ bodies["R"][layout.place[joint.a]] for x in (D, v))
+        s = float(state[at])
+        if math.isnan(s):  # it flies beside an end, which is nearest
+            end = float(joint.path.nearest(D)) > 0.5 * (joint.path.first + joint.path.last)
+            s = math.inf if end else -math.inf
+        slope = joint.path.at(float(np.clip(s, joint.path.first, joint.path.last)) if math.isinf(s) else s)[1]
         u = float(slope @ v) / float(slope @ slope)
-        found[joint.name, "travel"], found[joint.name, "speed"] = (float(state[at]), u), (u, 0.0)
+        found[joint.name, "travel"], found[joint.name, "speed"] = (s, u), (u, 0.0)
     return found
 
 
