@@ -27,13 +27,14 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.conditions import condition, condition_count, enter, measure_condition
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.jets import jet
     from heuncli.kernel.plane_rows import demanded_in_plane
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tracks import pace_of
-    from heuncli.kernel.tree import answered, direction_of, push
+    from heuncli.kernel.tree import answered, push
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:

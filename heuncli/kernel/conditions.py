@@ -14,6 +14,7 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, sub
     from heuncli.kernel.cams import cam_part
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import measure_in_plane
     from heuncli.kernel.rolling import rolling_row
@@ -36,7 +37,6 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
     from heuncli.kernel.tracks import track_row
-    from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import Carried
 
 

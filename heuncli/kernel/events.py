@@ -17,6 +17,7 @@ except ImportError:
 if not cython.compiled:
     from math import fabs
 
+    from heuncli.kernel.algebra import norm
     from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
     from heuncli.kernel.evaluator import value
@@ -25,7 +26,7 @@ if not cython.compiled:
     from heuncli.kernel.libm import INFINITY
     from heuncli.kernel.points import turned_far
     from heuncli.kernel.programs import ATAN2, HELD, HOLD, TAKEN, Bounds, Program, Programs, Span
-    from heuncli.kernel.scene import Scene, Watch
+    from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene, Watch
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course
 
@@ -219,8 +220,15 @@ def scale_watches(scene: cython.pointer[Scene], course: cython.pointer[Course]) 
         watch.scale = largest_seen(watch)
         if not watch.scale >= scene.limits.least_load:
             watch.scale = scene.limits.least_load
+        if watch.load >= 0 and watch.scale < size_of(cython.address(scene.loads[watch.load])):
+            watch.scale = size_of(cython.address(scene.loads[watch.load]))
         if out_of_sight(scene, watch, over_part(scene, course, watch, 0.0, 1.0), watch.scale):
             look_for_peak(scene, course, watch)
+
+
+def size_of(load: cython.pointer[Load]) -> cython.double:
+    """Of a bushing how large its force, or its moment, was last: a part counts by the whole, and not by itself."""
+    return norm(load.force) if load.kind == BUSHING_SHIFT else norm(load.moment)
 
 
 def over_part(

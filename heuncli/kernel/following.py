@@ -40,6 +40,7 @@ if not cython.compiled:
     from heuncli.kernel.conditions import condition, condition_count
     from heuncli.kernel.course import set_time
     from heuncli.kernel.dense import clipped, interpolate, need_interpolant
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.events import see
     from heuncli.kernel.jets import jet
@@ -63,7 +64,7 @@ if not cython.compiled:
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Method, Run
     from heuncli.kernel.tracks import place_beside
-    from heuncli.kernel.tree import direction_of, kinematics
+    from heuncli.kernel.tree import kinematics
 
     LOOKED_AT = 2  # parts of a step at whose ends loads are seen
 

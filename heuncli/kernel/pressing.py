@@ -24,6 +24,7 @@ if not cython.compiled:
     from math import fabs
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.libm import NAN
     from heuncli.kernel.scene import (
         ENDS,
@@ -40,7 +41,7 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import direction_of, push
+    from heuncli.kernel.tree import push
 
     MOST = 500  # corrections: Newton's method takes a few
 

@@ -14,6 +14,7 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.cams import cam_along
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.loads import omega_of
     from heuncli.kernel.scene import ALONG, CAM, DOT, GUIDE, MESH, ROD, STRAND, TOUCHES, TRACK, TURN, Closure, Scene
     from heuncli.kernel.shadow import cython
@@ -22,8 +23,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
     from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tangent_sheaves import strand_along
-    from heuncli.kernel.tracks import track_along
-    from heuncli.kernel.tree import direction_of
+    from heuncli.kernel.tangent_tracks import track_along
     from heuncli.kernel.values import MotionTangent, RowTangent
 
 

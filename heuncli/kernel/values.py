@@ -94,6 +94,26 @@ class StrandRate(Value):
     bend: float
 
 
+class RopeMotion(Value):
+    """The length of a rope and its rate."""
+
+    S: float
+    rate: float
+
+
+class LengthBounds(Value):
+    """Over a stretch of time: of a length, or a strain, how large its rate and its second derivative may be.
+
+    bend: how far from the chord between its ends it may be; far: of what it is the difference; rounding: relative.
+    """
+
+    rate: float
+    second: float
+    bend: float
+    far: float
+    rounding: float
+
+
 class VectorRate(Value):
     """A vector and its rate."""
 

@@ -168,6 +168,10 @@ class Answers(Protocol):
         """multiplier (..., n_t, rows); f, m (n_t, rows, 3), closed (n_t, rows)."""
 
     @property
+    def loads(self) -> Named:
+        """value (..., n_t, loads); in a blow of none."""
+
+    @property
     def parts(self) -> Named:
         """Of the rows that are sums: f, m, Q, on_a, on_b (n_t, parts, 3)."""
 

@@ -144,11 +144,20 @@ class CoupledRow:
 
 @record
 class Coupling:
-    """A coupling and its conditions; given: as the spec means it."""
+    """A coupling and its conditions; given: as the spec means it.
+
+    stretched: of a rope that stretches what would be its condition; a load pulls along its parts (RopeLoad).
+    """
 
     name: str
     rows: tuple[CoupledRow, ...]
     given: spec.Coupling
+    stretched: CoupledRow | None = None
+
+    @property
+    def carriers(self) -> tuple[CoupledRow, ...]:
+        """What it loads the bodies by: its conditions, or what a load pulls along."""
+        return self.rows if self.stretched is None else (self.stretched,)
 
     @property
     def bodies(self) -> frozenset[int]:
@@ -158,12 +167,12 @@ class Coupling:
     @property
     def ends(self) -> frozenset[int]:
         """The same, with the ground where it looks at that."""
-        return frozenset(i for row in self.rows for part in row.parts for i in part.bodies)
+        return frozenset(i for row in self.carriers for part in row.parts for i in part.bodies)
 
     @property
     def law(self) -> Expression | None:
-        """What tells a rope's length in time; None where that stays."""
-        return self.given.law if isinstance(self.given, spec.Rope) else None
+        """What prescribes a rope's length in time; None where that stays, or the rope stretches."""
+        return self.given.law if isinstance(self.given, spec.Rope) and not self.given.stretches else None
 
     @property
     def joints(self) -> frozenset[int]:

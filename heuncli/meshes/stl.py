@@ -9,17 +9,16 @@ read: the order of the corners says what is outside.
 from __future__ import annotations
 
 import re
-import warnings
 
 import numpy as np
 
 from heuncli.errors import Finding
 from heuncli.meshes.model import Soup
-from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused
+from heuncli.meshes.numbers import SAVE_AGAIN, SPACE, at_once, begins_of_words, floats, refused
 from heuncli.results import Array
 
 HEAD, FACET = 84, 50  # bytes
-SPACE, CASE = 0x20, 0x20  # the last of what stands between words; what makes a letter a small one
+CASE = 0x20  # makes a letter a small one
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 SOLID = re.compile(rb"^[ \t]*(?:end)?solid\b[^\r\n]*", re.MULTILINE | re.IGNORECASE)
 # the tokens of a facet; None: a number
@@ -62,9 +61,8 @@ def _as_text(content: bytes) -> Array:
 def _at_once(body: bytes) -> Array | None:
     """The corners by all words at their places, and all numbers in one go; None where it is not written as is usual."""
     text = np.frombuffer(body, np.uint8).copy()
-    seen = text > SPACE
-    begins = np.flatnonzero(seen[1:] & ~seen[:-1]) + 1
-    if not len(begins) or len(begins) % len(FORM) or seen[0]:
+    begins = np.flatnonzero(begins_of_words(text))
+    if not len(begins) or len(begins) % len(FORM):
         return None
     facets = begins.reshape(-1, len(FORM))
     for k, word in enumerate(FORM):
@@ -74,13 +72,8 @@ def _at_once(body: bytes) -> Array | None:
         if at[-1, -1] >= len(text) or not ((text[at] | CASE) == np.frombuffer(word, np.uint8)).all():
             return None
         text[at] = SPACE
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            numbers = np.fromstring(text.tobytes(), sep=" ")
-        except (DeprecationWarning, ValueError):
-            return None
-    if len(numbers) != 12 * len(facets):
+    numbers = at_once(text.tobytes(), np.float64)
+    if numbers is None or len(numbers) != 12 * len(facets):
         return None
     return np.ascontiguousarray(numbers.reshape(-1, 4, 3)[:, 1:])
 

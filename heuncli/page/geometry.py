@@ -55,7 +55,8 @@ def scene_of(
     """
     number = {body.name: k for k, body in enumerate(machine.bodies)} | {GROUND: -1}
     kinds = Topologies()
-    bodies = [_body(body, results, kinds) for body in machine.bodies]
+    rolling = {wheel.wheel.body for wheel in spec.rolling.values()}
+    bodies = [_body(body, results, kinds, body.name in rolling) for body in machine.bodies]
     order = {joint.name: k for k, joint in enumerate(machine.joints)}
     belts = {belt.name for belt in machine.belts}
     ropes = {name for name, joint in spec.joints.items() if joint.tension_only}
@@ -96,16 +97,17 @@ def _triple(vector: Array) -> list[float]:
     return [float(component) for component in vector]
 
 
-def _body(body: BodyLook, results: Results, kinds: Topologies) -> dict[str, Any]:
-    """A body: its poses, its surfaces, bars and lines, its points, in its own axes."""
+def _body(body: BodyLook, results: Results, kinds: Topologies, rolls: bool) -> dict[str, Any]:
+    """A body: its poses, its surfaces, bars and lines, its points, in its own axes; rolls: as a wheel, or a ball."""
     pose = results.bodies[body.name]
+    rolled = [edge for surface in body.surfaces if rolls and surface.ball is not None for edge in surface.edges[:2]]
     return {
         "name": body.name,
         "places": drawn(pose["position"]),
         "attitudes": drawn(pose["quaternion"]),
         "surfaces": [_surface(surface, kinds) for surface in body.surfaces],
         "bars": [drawn(line) for line in body.bars],
-        "lines": [drawn(line) for line in body.lines],
+        "lines": [drawn(line) for line in (*body.lines, *rolled)],
         "spread": body.spread,
         "points": [{"name": name, "at": _triple(point)} for name, point in body.points.items()],
     }

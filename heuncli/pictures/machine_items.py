@@ -311,12 +311,22 @@ def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     looks = {look.name: look for look in stood.machine.joints}
     for own in stood.machine.acting:
         look = looks[own.joint]
-        axis = look.axis / np.linalg.norm(look.axis)
+        axis = way_along(stood, look, k) if kind_of(look, stood.spec).follows_path else look.axis
+        axis = axis / np.linalg.norm(axis)
         seen = stood.seen_along(look.a, axis, k)
         symbol = own.symbols[int(stood.sense(look.a, axis, k) < 0.0)]
         along = on_paper(seen) if own.slides and seen.any() else (1.0, 0.0)
         told = f"{own.name}: {own.what} in {own.joint}"
         yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, APPLIED, told)
+
+
+def way_along(stood: Stood, look: JointLook, k: int) -> Array:
+    """Which way a path goes on where its point is, axes of its body; where it crosses itself one of both."""
+    joint = stood.spec.joints[look.name]
+    assert joint.path is not None
+    D = stood.poses.at(look.b, look.q, k) - stood.poses.at(look.a, look.p, k)
+    D = D if look.a == GROUND else D @ stood.poses.attitudes[look.a][k]
+    return np.asarray(joint.path.at(float(joint.path.nearest(D)))[1])
 
 
 def marks(stood: Stood, k: int) -> Iterator[Symbol]:

@@ -28,10 +28,12 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 
 def whole(mechanism: Mechanism) -> list[str]:
     """Why a scene is moved as it is given, in sentences; none where it may be made smaller."""
-    if not mechanism.rubbing:
-        return []
-    why = "friction hangs on what joints carry, and in a smaller scene they carry less"
-    return [f"the scene is moved as it is given: {why}"]
+    why = []
+    if mechanism.rubbing:
+        why.append("friction hangs on what joints carry, and in a smaller scene they carry less")
+    if any(own.stretched is not None for own in mechanism.couplings):
+        why.append("ropes that stretch pull at bodies that a smaller scene might be without")
+    return [f"the scene is moved as it is given: {reason}" for reason in why]
 
 
 def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:

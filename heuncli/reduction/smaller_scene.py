@@ -21,12 +21,12 @@ from heuncli.mechanism.model import (
     Body,
     BushingLoad,
     Joint,
+    JointLoad,
     Load,
     Mechanism,
     NamedPoint,
     PairLoad,
     PointLoad,
-    ThreadLoad,
 )
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -159,7 +159,7 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
             load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
             b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
         )  # fmt: skip
-    assert not isinstance(load, ThreadLoad)  # scenes with such friction are moved as they are given (compose.py)
+    assert isinstance(load, JointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)

@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem
 from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.model import ThreadLoad
+from heuncli.mechanism.model import ThreadLoad, path_of_load
 from heuncli.rest.coordinates import Coordinates
 from heuncli.rest.pose import Pose
 from heuncli.results import Array
@@ -88,7 +88,7 @@ def no_value(coordinates: Coordinates, change: Array) -> Problem:
     """The problem of loads without a value, or a slope, where the search has come; change (k, f): beside the pose."""
     what = "value" if not np.isfinite(change).all() else "slope"
     layout = coordinates.layout
-    loads = [f"forces.{load.name}" for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    loads = [path_of_load(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MOST_NAMES])})" if loads else ""
     message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
     return no_rest(message, "start nearer to the pose, or give the load a value on both sides")

@@ -48,6 +48,6 @@ def acting_of(spec: Spec) -> Iterator[ActingLook]:
     for joint, name, what in acting:
         kind = kind_in(spec, spec.joints[joint].kind)
         if not kind.keeps_distance:
-            slides = bool(kind.shifts) and kind.turn.asks == "all"
+            slides = kind.follows_path or (bool(kind.shifts) and kind.turn.asks == "all")
             towards, away, along = SHOWN[what]
             yield ActingLook(name, what, joint, (along, along) if slides else (towards, away), slides)

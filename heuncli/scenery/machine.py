@@ -25,6 +25,7 @@ from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
 from heuncli.spec.names import GROUND
 from heuncli.tree.prepare import PreparedScene
 
+SEVERAL = 2  # discs, between which a body without shapes is a line
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
 OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
@@ -141,8 +142,10 @@ def _body(
     drawn = (*elements.lines.get(name, ()), *rims, *spokes)
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        ends += [] if body.shapes else [np.array(body.center, dtype=np.float64)]
-        return BodyLook(name, points, surfaces, drawn, bars=tuple(_arms(shapes, ends)))
+        if body.shapes or len(discs) < SEVERAL:
+            return BodyLook(name, points, surfaces, drawn, bars=tuple(_arms(shapes, ends)))
+        between = _through([*ends, np.array(body.center, dtype=np.float64)])
+        return BodyLook(name, points, surfaces, drawn, bars=(between,))
     # of point masses alone neither centre nor inertia is known yet, nor needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
     line = _through([*ends, *centre])

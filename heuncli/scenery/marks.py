@@ -1,7 +1,7 @@
 """Marks in a machine, symbols with a place and a direction: stops, latches, the ground under wheels and ropes' ends.
 
 The limit of an angle stands where the body would come to, as far out as its centre of mass; that of a travel where the
-joint's `to` point would come to; that of a length on the line of the rod.
+joint's `to` point would come to, of a path on that; that of a length on the line of the rod.
 """
 
 from __future__ import annotations
@@ -140,6 +140,9 @@ def mark(scene: PreparedScene, joint: Joint, stop: Stop[str], symbol: str, limit
     told = f"{stop.name}: {symbol} of {joint.name}"
     if stop.quantity == "length":
         return LengthMark(symbol, told, ((names[joint.a], joint.p), (names[joint.b], joint.q)), limit, sign, stop.name)
+    if joint.path is not None:
+        r, slope, *_ = joint.path.track(limit)
+        return FixedMark(symbol, told, names[joint.a], joint.p + r, sign * slope, stop.name)
     (xa, Ra), (xb, Rb) = (pose_of(scene.start, i) for i in (joint.a, joint.b))
     own, n = joint_start(scene.mechanism, scene.start, joint), joint.axis
     to = Ra.T @ (xb + Rb @ joint.q - xa)

@@ -75,7 +75,7 @@ def _rope(own: Coupling, bodies: Mapping[int, str]) -> RopeLook:
     """One of them; between two sheaves that hold it each condition has strands of its own."""
     ways: list[StrandLook] = []
     arcs: list[ArcLook] = []
-    for row in own.rows:
+    for row in own.carriers:
         first = len(ways)
         ways += [_strand(part, bodies) for part in row.parts if not part.lies]
         for part in row.parts:

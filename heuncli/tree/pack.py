@@ -18,6 +18,7 @@ from heuncli.mechanism.model import (
     Joint,
     JointLoad,
     Mechanism,
+    RopeLoad,
     Stop,
 )
 from heuncli.records import replace
@@ -415,6 +416,10 @@ class _Builder:
                         self._put_path(part.cam.lift)
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
+        for load in self.mechanism.loads:
+            if isinstance(load, RopeLoad):
+                first = len(self.part_rows)
+                self.part_rows += [part_row(part, first, self.in_tree, self.relative, freedoms) for part in load.parts]
 
     def _rope(self, k: int) -> None:
         """The row that comes next is that of a rope."""

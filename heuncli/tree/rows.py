@@ -110,6 +110,8 @@ class LoadRow:
     to_frame: Sequence[float] = (0.0,) * 9
     stiffnesses: Vector = ZERO
     resistances: Vector = ZERO
+    part: int = 0
+    part_count: int = 0
 
 
 @record
@@ -208,6 +210,7 @@ class WatchRow:
     program: Program
     curved: int
     condition: int
+    load: int
 
 
 @record

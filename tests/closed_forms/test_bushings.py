@@ -193,3 +193,18 @@ analysis: {duration: 1, samples: 3}
     (problem,) = refused.value.problems
     assert problem.code == "no-value"
     assert "forces.mount.turn_z = 0.5: the table k covers x from -0.5 to 0.5" in problem.message
+
+
+def test_a_part_that_rests_at_a_knot_is_no_doubt() -> None:
+    """A table bends where nothing turns about its axis: the moment's other parts say what is small."""
+    found = solved("""
+heun: 1
+ground: {points: {O: [0, 0, 0]}}
+tables: {k: {x: [-0.5, 0, 0.5], y: [-2, 0, 4]}}
+bodies: {block: {mass: 2, center: [0, 0, 0], inertia: [0.01, 0.01, 0.01], points: {o: [0, 0, 0]}}}
+forces:
+  mount: {type: bushing, from: ground.O, to: block.o, stiffness: 1e4, turning: [k, 50, 50], turning_damping: 0.1}
+  push: {type: couple, on: block.o, vector: [0, 1, -2]}
+analysis: {duration: 0.1, samples: 3}
+""")
+    assert found.warnings == ()

@@ -131,7 +131,7 @@ MOUNT = "type: bushing, from: ground.O, to: m.c"
         ("{type: damper, joint: guide, torque: -rate}", "load-joint"),
         ("{type: damper, joint: tube, torque: -rate}", "load-joint"),
         ("{type: motor, joint: guide, curve: torq}", "load-joint"),
-        ("{type: motor, joint: shaft, curve: torq, ratio: 0}", "load-form"),
+        ("{type: motor, joint: shaft, curve: torq, ratio: 0}", "motor"),
         ("{type: motor, joint: shaft, curve: torq, limit: -3}", "negative"),
         ("{type: motor, joint: shaft, curve: 30 - speed}", "unknown-name"),
         ("{type: spring, from: ground.O, to: m.c, force: -k*length*length}", "wrong-dimension"),

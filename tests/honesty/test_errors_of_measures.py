@@ -85,6 +85,26 @@ joints:
 couplings: {sum: {type: ratio, of: [p, q], factors: [0.001, 0.003]}}
 analysis: {duration: 1, samples: 11}
 """
+SWINGING = """
+heun: 1
+gravity: [0, 0, -3]
+ground: {points: {A: [0, 0, 0], B: [1, 0, 0]}}
+bodies: {a: {mass: 1, center: [1, 0, 0.1], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 0], p: [1.2, 0.1, 0.3]}}}
+joints: {u: {type: universal, from: ground.A, to: a.o, axis: [0, 1, 0], to_axis: [0, 0, 1]}}
+forces:
+  turning: {type: turn_spring, joint: u, stiffness: 40}
+  spring: {type: spring, from: ground.B, to: a.p, stiffness: 20, length: 0.2}
+analysis: {duration: 2, samples: 11}
+"""
+
+
+def test_the_error_of_the_central_axis_covers_a_coarse_run() -> None:
+    """Its point is s × M / s²: near next to no force it errs by more than force and moment do of their largest."""
+    for quantity in ("point", "direction"):
+        path = f"foundation.axis.{quantity}"
+        coarse, close = (heuncli.solve(text=SWINGING, tolerance=tolerance)[path] for tolerance in (1e-3, 1e-10))
+        off = np.linalg.norm(coarse.values - close.values, axis=1).max()
+        assert close.error < 1e-2 * off < off <= coarse.error < 10.0 * off
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from heuncli.reduction.model import Reduced
@@ -9,8 +10,11 @@ from heuncli.spec.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
 from tests.shared.coupled_in_a_plane import ELEMENTS, coupled_flat
+from tests.shared.coupled_scenes import ELEMENTS as IN_SPACE
+from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.reduced import pair, same
 from tests.shared.scenes import moving
+from tests.shared.split_bodies import split
 
 TIMES = (0.0, 0.1, 0.2)
 WAYS = ("drawn", "welded", "declared")
@@ -27,6 +31,19 @@ def test_in_a_plane(kind: str) -> None:
         assert any(sentence.startswith("solved in the plane") for sentence in both.told)
         reduced = both.small.setup.reduced
         assert how != "welded" or (reduced is not None and len(reduced.told + reduced.kept) > 1)
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("kind", IN_SPACE)
+def test_between_bodies_that_are_one(kind: str) -> None:
+    """In space, every kind: what a coupling looks at is a part of what moves."""
+    seed = 40 + list(IN_SPACE).index(kind)
+    scene = split(coupled_scene(seed, (kind,)), np.random.default_rng(seed))
+    for coupling in scene.get("couplings", {}).values():
+        coupling.pop("friction", None)  # a thread that rubs is moved as it is given
+    both = pair(load(f"{kind} {seed}", to_yaml(scene)))
+    same(both)
+    assert any("one body" in sentence for sentence in both.told)
 
 
 SCENE = """\
@@ -89,6 +106,41 @@ def test_flat_but_for(name: str) -> None:
     found = make(*given)
     assert not in_plane(found)
     assert any(why in sentence for sentence in found.kept), found.kept
+
+
+BEVEL = """\
+heun: 1
+gravity: [0, -9.81, 0]
+ground: {points: {A: [0.1, 0, 0], B: [0, 0.1, 0]}}
+bodies:
+  one: {mass: 1, center: [0, 0, 0], inertia: [0.02, 0.01, 0.01], points: {c: [0, 0, 0]}}
+  two: {mass: 1, center: [0, 0, 0], inertia: [0.01, 0.02, 0.01], points: {c: [0, 0, 0]}}
+joints:
+  first: {type: pin, from: ground.A, to: one.c, axis: [1, 0, 0], initial: {rate: 10}}
+  second: {type: pin, from: ground.B, to: two.c, axis: [0, 1, 0]}
+couplings: {m: {type: gear, of: [first, second], teeth: [20, 20]}}
+analysis: {duration: 0.2, samples: 3}
+"""
+
+
+def test_a_scene_in_space_tells_which_coupling_makes_it_one() -> None:
+    """Its joints alone would leave it in a plane across either axis."""
+    found = set_up(load("scene.yaml", BEVEL)).reduced
+    assert found is not None
+    assert not found.told
+    assert found.kept == ("not solved in the plane across x: couplings.m counts second.angle, a coordinate out of it",)
+
+
+def test_what_the_drives_leave_nothing_free_of_is_not_made_smaller() -> None:
+    """Nothing is integrated; but where a method is asked for, and then in the plane."""
+    driven = SCENE.format(
+        tail=gear() + "\ndrives: {m: {joint: first, angle: t}, n: {joint: hang, angle: 2*t}}", hang="pin", second="pin",
+        axis="[0, 0, 1]", about=", axis: [0, 0, 1]", p=0.0,
+    )  # fmt: skip
+    assert set_up(load("scene.yaml", driven)).reduced is None
+    asked = set_up(load("scene.yaml", driven), "DOP853").reduced
+    assert asked is not None
+    assert in_plane(asked)
 
 
 FLAT = {

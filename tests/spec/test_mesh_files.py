@@ -229,3 +229,14 @@ def test_a_mesh_in_metres_of_the_size_of_a_house_is_warned_of(tmp_path: Path) ->
     for scale, codes in (("", ["mesh-size"]), (", scale: 1 mm", []), (", scale: 1", [])):
         (tmp_path / "a.yaml").write_text(text.replace(", density", f"{scale}, density"))
         assert [w.code for w in load(tmp_path / "a.yaml").warnings] == codes
+
+
+def test_a_mesh_without_a_mass_is_told_once(tmp_path: Path) -> None:
+    (tmp_path / "rod.stl").write_bytes(t.binary_stl(UNIT))
+    text = SCENE.replace("FILE", "rod.stl")
+    density = text[text.index(", density") : text.index("}", text.index(", density"))]
+    for given, code in (("", "shape-form"), (", density: 0", "not-positive"), (", mass: 0", "not-positive")):
+        (tmp_path / "a.yaml").write_text(text.replace(density, given))
+        with pytest.raises(SpecError) as caught:
+            load(tmp_path / "a.yaml")
+        assert [problem.code for problem in caught.value.problems] == [code]

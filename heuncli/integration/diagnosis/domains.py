@@ -14,7 +14,7 @@ from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFu
 from heuncli.integration.diagnosis.ways import Moving, along_cut_paths, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad, RopeLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.results import Array
@@ -52,7 +52,7 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
 def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     """What a load acts between, as its own law may name it; of rates of rates nothing is known."""
     name = f"{LOADS}.{load.name}"
-    if isinstance(load, PairLoad):
+    if isinstance(load, PairLoad | RopeLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
     return {}

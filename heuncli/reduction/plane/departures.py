@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
-from heuncli.mechanism.model import BushingLoad, Joint, PairLoad, PointLoad, ThreadLoad
+from heuncli.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad, ThreadLoad
 from heuncli.reduction.plane.departure import Departure, beside
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
@@ -131,6 +131,8 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             yield from _bushing(seen, load, height)
         elif isinstance(load, ThreadLoad):
             yield Departure(f"couplings.{load.name} rubs along its axis", 1.0, True)
+        elif not isinstance(load, JointLoad):
+            yield Departure(f"couplings.{load.name} may run out of it", 1.0, True)
         elif load.kind == "turn_spring":
             if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
                 yield Departure(f"{name} turns about an axis in it", 1.0, True)

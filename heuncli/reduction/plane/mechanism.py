@@ -30,7 +30,6 @@ from heuncli.mechanism.model import (
     NamedPoint,
     PairLoad,
     PointLoad,
-    ThreadLoad,
 )
 from heuncli.records import record, replace
 from heuncli.reduction.plane.view import View
@@ -164,7 +163,7 @@ class Flat:
             return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])
         if isinstance(load, JointLoad):
             return self.turn_spring(load) if load.kind == "turn_spring" else load
-        assert not isinstance(load, ThreadLoad)  # scenes with such friction are moved as they are given (compose.py)
+        assert isinstance(load, PointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
         if load.body == GROUND:
             return load
         S = self.axes(load.body) if load.in_body else self.seen.E

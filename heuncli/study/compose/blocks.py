@@ -47,7 +47,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
-        shown["couplings"] = {own.coupling.name: coupling(own, recovery) for own in recovery.couplings}
+        shown["couplings"] = {own.coupling.name: told_coupling(recovery, own) for own in recovery.couplings}
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
@@ -171,16 +171,16 @@ def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> Forc
     return {"shift": shift, "turn": turn, "force": force, "moment": moment}
 
 
-def coupling(own: CouplingLoads, recovery: Recovery) -> dict[str, Any]:
-    """The block of one coupling: its load, what it exerts on bodies, what engineers ask of its kind besides."""
+def told_coupling(recovery: Recovery, own: CouplingLoads) -> dict[str, Any]:
+    """The block of a coupling, with the numbers that its kind alone has."""
     mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
-    given = own.coupling.given
-    block = coupling_block(own, [body.name for body in mechanism.bodies], pretension(own, recovery.loads))
+    given, names = own.coupling.given, [body.name for body in mechanism.bodies]
+    block = coupling_block(own, names, pretension(own, recovery.loads))
     if given.type in ("gear", "screw", "belt"):
         from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
         struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
+        block = TOLD[given.type](given, own.carried, struck) | block
     if own.friction is not None:
         from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
 

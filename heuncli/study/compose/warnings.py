@@ -104,7 +104,7 @@ def would_let_go(mechanism: Mechanism, name: str) -> str:
 def pushes(rope: CouplingLoads) -> bool:
     """Whether the rope of a coupling pushes at the one instant, before or behind any of its sheaves."""
     return any(
-        row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=True)
+        row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=False)
     )
 
 

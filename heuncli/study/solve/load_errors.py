@@ -21,9 +21,9 @@ from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.foundation import total
+from heuncli.kinetostatics.foundation import central_axis, total
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
@@ -115,7 +115,7 @@ class LoadErrors:
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
         if "energy" in self.compared:
-            self.add_energy(several, states, loads)
+            self.add_energy(several, states)
         if "motion" in self.compared:
             self.add_motion(states)
 
@@ -149,7 +149,8 @@ class LoadErrors:
         if self.by_cause:
             from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
 
-            for kind, name, values, more in compared_shares(self.setup, several, states, applied, self.compared, terms):
+            pushing = [*applied, *rope_actions(couplings)]
+            for kind, name, values, more in compared_shares(self.setup, several, states, pushing, self.compared, terms):
                 F, M = (rounding * more for rounding in terms.rounding)
                 rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
                 self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
@@ -230,8 +231,10 @@ class LoadErrors:
         forces_rounding, moments_rounding = terms.rounding
         inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
         elements = [on for action in inner if (on := action.on_ground()) is not None]
+        whole = total(states, terms.weight - terms.ma, terms.spin, actions, origin)
+        self.add_axis(*whole)
         wrenches = [
-            ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
+            ("foundation", *whole),
             ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1)),
             ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1)),
             *(("elements", force, moment) for force, moment, _ in elements),
@@ -240,6 +243,16 @@ class LoadErrors:
             F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
             self.take((kind, "force"), F, forces_rounding, terms.force)
             self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
+
+    def add_axis(self, force: Array, moment: Array) -> None:
+        """The central axis of the wrench at the asked instants: where there is next to no force it errs by far more."""
+        count = len(force) // len(self.asked)
+        told = np.repeat(self.asked, count)
+        axis = central_axis(force[told], moment[told], self.setup.about, 0.0)
+        for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
+            own = values[0::count]
+            apart = np.max([norms((own - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
+            self.extent("axis", unit).differ(np.nan_to_num(apart), self.before[self.asked])
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
@@ -263,9 +276,9 @@ class LoadErrors:
                 turn = turned * lengths(both[0::count])
                 self.take(("sections", quantity), both, rounding, of, turn)
 
-    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_energy(self, several: Recovered, states: BodyStates) -> None:
         """Kinetic and potential energy, and work."""
-        block = energy(self.setup.scene.layout, several, states, loads)
+        block = energy(self.setup.scene.layout, several, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
@@ -292,7 +305,7 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains")}
+        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains", "axis")}
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
