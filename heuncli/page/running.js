@@ -104,6 +104,7 @@ export function drawMark(pen, view, parts, mark, shown, colours) {
 /** What acts in a joint, or drives it: which way it turns is seen from the side that its axis points to. */
 export function drawActing(pen, view, poses, scene, own, colours) {
   const joint = scene.joints[own.joint];
+  if (joint.kind === "curve") return; // whose direction is that of its path where the point is
   const [a, b, near] = view.direct(unit(points(poses, joint.a, joint.axis)));
   const size = Math.hypot(a, b);
   const along = own.slides && size > SIDE * view.scale ? [a / size, b / size] : [1, 0];
