@@ -89,7 +89,8 @@ def every_body_balances(scene: dict[str, Any], found: Results) -> None:
     read = model(weighed(scene))
     for k, t in enumerate(found.time):
         state = state_at(found.bodies, k)
-        loads = [push for parts in pushes(read, state, float(t)).values() for push in parts]
+        own = {n: parts for n, parts in pushes(read, state, float(t)).items() if n not in found.couplings}
+        loads = [push for parts in own.values() for push in parts]  # a pretension is among what belts are told to exert
         for name, m in read.masses.items():
             c, s = state[name].point(m.center), found.bodies[name]["angular_velocity"][k]
             total = told_on(found, read, name, k, c)
