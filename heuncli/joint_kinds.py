@@ -69,10 +69,11 @@ ABOUT_Z = Turn("free", (("z", "axis"), ("z", "across")), ("z",))  # upright as d
 HELD_ALONG = {
     POINT: Hold("point", ("first", "second")), LINE: Hold("point", ("first", "second")),
     PLANE: Hold("plane", (), ("first", "second")), DISTANCE: DISTANCE,
+    CURVE: Hold("curve", ("across",), ("axis",)), CURVE_IN_PLANE: Hold("curve", ("across",), ("axis",)),
 }  # fmt: skip
 TURNS_ALONG = {
     FREE: Turn("free", (), ("z",)), ABOUT_AXIS: Turn("axis", (), ("axis",)), ABOUT_TWO: Turn("axis", (), ("axis",)),
-    NOT_AT_ALL: Turn("all", (("first", "second"),)),
+    NOT_AT_ALL: Turn("all", (("first", "second"),)), ABOUT_Z: Turn("free", (), ("z",)),
 }  # fmt: skip
 HELD_ACROSS = {
     POINT: Hold("point", ("axis", "across")), LINE: Hold("line", ("across",), ("axis",)),
@@ -269,7 +270,7 @@ JOINTS: dict[str, Kind] = TYPES | {
 FLAT: dict[tuple[str, bool], Kind] = {
     (kind.name, along): kind._replace(
         name=f"{kind.name} {'along' if along else 'across'} the normal", hold=held[kind.hold], turn=turns[kind.turn],
-        coordinates=tuple(x for x in kind.coordinates if x == ("angle" if along else "travel")),
+        coordinates=tuple(x for x in kind.coordinates if kind.follows_path or x == ("angle" if along else "travel")),
         spoken=kind.spoken or kind.name,
     )
     for kind in JOINTS.values()

@@ -1,4 +1,4 @@
-"""Ropes that go slack, and rods free between limits, at the start: what they ask of poses and rates.
+"""Ropes that go slack, what flies off its path, rods free between limits, at the start: what they ask of it.
 
 A rope shorter than the distance of its points as assembled without it is a rod; one that is longer is slack and asks
 for nothing; one that just reaches, or whose length is not given, is taut: its rate is kept where the velocities that
@@ -14,6 +14,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.assembly.conditions import Ask, JointCondition
 from heuncli.errors import SolveError
+from heuncli.expressions.beside import left
 from heuncli.mechanism.model import GROUND, Assembly, Mechanism
 from heuncli.records import replace
 
@@ -22,9 +23,13 @@ Assemble = Callable[[list[JointCondition]], Assembly]
 
 
 def one_sided(mechanism: Mechanism) -> tuple[list[int], list[int]]:
-    """The ropes that go slack, and the rods whose length a stop limits: joints."""
+    """The ropes that go slack and what may lie beside its path; the rods whose length a stop limits: joints."""
     free = sorted({stop.joint for stop in mechanism.stops if stop.quantity == "length"})
-    ropes = [k for k, joint in enumerate(mechanism.joints) if joint.restitution is not None and k not in free]
+    ropes = [
+        k
+        for k, joint in enumerate(mechanism.joints)
+        if joint.restitution is not None and joint.travel is None and k not in free
+    ]
     return ropes, free
 
 
@@ -57,13 +62,21 @@ def assembled(mechanism: Mechanism, found: Sequence[JointCondition], size: float
 
 
 def beyond(mechanism: Mechanism, start: Assembly, k: int) -> float:
-    """How far the points of a rope are farther apart than it is long [m]; 0 of one that is as long as they are."""
+    """How far the points of a rope are farther apart than it is long [m]; 0 of one that is as long as they are.
+
+    Of a path that pushes to its left: how far to the right of it its point is.
+    """
     joint = mechanism.joints[k]
-    if joint.length is None:
+    if joint.length is None and joint.path is None:
         return 0.0
     places = [
         point if body == GROUND else start.position[body] + start.rotation[body] @ point
         for body, point in ((joint.a, joint.p), (joint.b, joint.q))
     ]
     D = places[1] - places[0]
+    if joint.path is not None:
+        off = D if joint.a == GROUND else D @ start.rotation[joint.a]
+        r, slope, _ = joint.path.at(float(joint.path.nearest(off)))
+        return float((r - off) @ left(joint.path.normal, slope))
+    assert joint.length is not None
     return float(np.sqrt(D @ D)) - joint.length

@@ -61,7 +61,7 @@ def planned(scene: PreparedScene, named: str | None, turns: int | None, rate: fl
 def require_no_contacts(mechanism: Mechanism) -> None:
     """Raise SolveError for what may open and close: no pose tells whether it is closed."""
     names = [stop.path for stop in mechanism.stops]
-    names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.tension_only]
+    names += [f"joints.{joint.name}" for joint in mechanism.joints if joint.opens]
     names += [f"couplings.{own.name}" for own in mechanism.couplings if opens(own)]
     hint = "leave it out; or --period tells orders of time, of a motion that comes back"
     if names:

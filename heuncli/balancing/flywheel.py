@@ -22,7 +22,16 @@ from heuncli.balancing.load_torque import torques
 from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import BushingLoad, JointLoad, Load, Mechanism, PairLoad, ThreadLoad
+from heuncli.mechanism.model import (
+    BushingLoad,
+    JointLoad,
+    Load,
+    Mechanism,
+    PairLoad,
+    RopeLoad,
+    ThreadLoad,
+    path_of_load,
+)
 from heuncli.records import record
 from heuncli.results import Array
 
@@ -151,12 +160,12 @@ def course_of(cycle: LoadedCycle) -> tuple[WorkCourse, float]:
 
 def require_placed(mechanism: Mechanism) -> None:
     """Raise SolveError for loads that hang on rates or on the time: their work is not told by the angle."""
-    found = dict.fromkeys((load.name, why) for load in mechanism.loads for why in unplaced(load))
+    found = dict.fromkeys((path_of_load(load), why) for load in mechanism.loads for why in unplaced(load))
     hint = "leave it out of the scene, or run the motion with the wheel in it"
     if found:
         raise SolveError(*(
-            Problem("no-flywheel", f"forces.{name} {why}: its work over a cycle is not told by the angle", hint=hint,
-                    about=f"forces.{name}")
+            Problem("no-flywheel", f"{name} {why}: its work over a cycle is not told by the angle", hint=hint,
+                    about=name)
             for name, why in found
         ))  # fmt: skip
 
@@ -169,7 +178,7 @@ def unplaced(load: Load) -> Iterator[str]:
         yield "hangs on the way that its thread turns"
     if isinstance(load, JointLoad) and load.kind == "turn_spring" and load.turning:
         yield "has damping"
-    if isinstance(load, PairLoad) and load.damping:
+    if isinstance(load, PairLoad | RopeLoad) and load.damping:
         yield "has damping"
     if isinstance(load, BushingLoad) and (load.shift.damping.any() or load.turn.damping.any()):
         yield "has damping"

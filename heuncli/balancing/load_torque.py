@@ -12,7 +12,8 @@ from heuncli.balancing.cost import LoadedCycle, loaded
 from heuncli.balancing.results import OrderRow
 from heuncli.balancing.rows import CycleTurning, order_rows
 from heuncli.errors import SolveError
-from heuncli.mechanism.model import Mechanism
+from heuncli.kinetostatics.energy import power_of_rope
+from heuncli.mechanism.model import Mechanism, path_of_load
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
@@ -37,9 +38,9 @@ def load_torque(spec: Spec, scene: PreparedScene, plan: CyclePlan) -> LoadTorque
     mechanism = scene.mechanism
     if not mechanism.loads and not mechanism.gravity.any():
         return LoadTorque()
-    told = [load.name for load in mechanism.loads if any(value.time_dependent for value in load.values)]
+    told = [path_of_load(load) for load in mechanism.loads if any(value.time_dependent for value in load.values)]
     if told:
-        return LoadTorque(note=f"orders of the loads are not told: forces.{told[0]} depends on t")
+        return LoadTorque(note=f"orders of the loads are not told: {told[0]} depends on t")
     rate = plan.rate or 1.0
     try:
         cycle = loaded(spec, scene, mechanism, plan, rate, SAMPLES * plan.turns)
@@ -57,4 +58,6 @@ def torques(cycle: LoadedCycle, mechanism: Mechanism) -> Array:
     """The power of each load, and of the weight, (n, loads + 1) [W]."""
     masses = np.array([body.mass for body in mechanism.bodies])
     weight = np.einsum("n,tni,i->t", masses, cycle.states.v_centre, mechanism.gravity)
-    return np.stack([*(load.power for load in cycle.recovery.loads), weight], axis=1)
+    recovery = cycle.recovery
+    ropes = [power_of_rope(cycle.states, own) for own in recovery.couplings if own.coupling.stretched is not None]
+    return np.stack([*(load.power for load in recovery.loads), *ropes, weight], axis=1)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 from heuncli.cli.output import say
 from heuncli.errors import Problem, UsageError
@@ -15,8 +15,10 @@ from heuncli.telling.asked_values import all_or_errors as all_or_errors  # for t
 from heuncli.telling.asked_values import choice as choice
 from heuncli.telling.asked_values import positive as positive
 from heuncli.telling.asked_values import tolerance as tolerance
-from heuncli.telling.asked_values import within_run
 from heuncli.telling.warned import warnings_of
+
+if TYPE_CHECKING:
+    from heuncli.study.ask.study import Study
 
 
 class SolverRequest(Protocol):
@@ -72,13 +74,16 @@ def spec_among(words: Sequence[str], command: str, usage: str) -> tuple[str, lis
     return files[0], [word for word in words if "=" in word]
 
 
-def instants(words: str, times: Array) -> Array:
-    """The instants of `--at`, sorted; all must lie within the run, (n_t,) ascending."""
-    try:
-        asked = sorted({float(word) for word in words.split(",")})
-    except ValueError:
-        raise UsageError(Problem("bad-option", f"--at {words}: expected numbers", hint="such as --at 0.5,1")) from None
-    return within_run("--at", asked, times)
+def instants(words: str, study: Study) -> Array:
+    """The instants of `--at` in a run, (n_t,) ascending. Raises UsageError, also of extremes, which tables tell."""
+    from heuncli.telling.asked_instants import measures, parse, times_of  # where they are asked for
+
+    asked = parse(words)
+    if measures(asked):
+        message = f"--at {words}: tables show by themselves when each number is largest"
+        hint = "leave --at out; or name a time, first, last, impulse:NAME"
+        raise UsageError(Problem("bad-option", message, hint=hint))
+    return times_of(asked, study)
 
 
 def warn(spec: Spec, results: Results | None, quiet: bool, place: str = "heun", later: Iterable[str] = ()) -> list[str]:

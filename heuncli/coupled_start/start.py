@@ -18,7 +18,7 @@ from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene, arranged
-from heuncli.tree.starts import JointStart, joint_start, unwrapped
+from heuncli.tree.starts import JointStart, joint_start
 
 TOGETHER = 2000  # freedoms that are fitted at once: dense matrices of them must fit into memory and patience
 
@@ -90,13 +90,13 @@ def _hurried(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> bool:
 
 
 def _counted(scene: PreparedScene, state: Array, start: Assembly) -> tuple[JointStart, ...]:
-    """Where the joints stand at a start that coordinates have moved to, angles counted on from where they were."""
+    """Where the joints stand at a start that coordinates have moved to, angles counted on from where they were zero."""
     mechanism, layout = scene.mechanism, scene.layout
     found = []
     for k, joint in enumerate(mechanism.joints):
         at = joint_start(mechanism, start, joint)
         near = _angle(layout, k, state)
-        found.append(at if near is None else replace(at, angle=unwrapped(at.angle, near)))
+        found.append(at if near is None else replace(at, R_ref=layout.starts[k].R_ref, angle=near))
     return tuple(found)
 
 

@@ -67,6 +67,11 @@ def head(x: float, y: float, angle: float, size: float = 6.0) -> SymbolPart:
     )
 
 
+def shoe(inner: Points, outer: Points) -> SymbolPart:
+    """What presses on something: between two lines."""
+    return SymbolPart((*inner, *outer), True, "ink")
+
+
 def radial(inner: float, outer: float, angle: float) -> tuple[tuple[float, float], tuple[float, float]]:
     """A stroke away from the middle; angle [degrees]."""
     a, b = math.cos(math.radians(angle)), math.sin(math.radians(angle))
@@ -96,6 +101,10 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     ),
     "bed": SymbolRow(hatched(7.0, 15.0), "", "/"),
     "clamp": SymbolRow(hatched(4.0, 10.0), "", "/"),
+    "road": SymbolRow(hatched(0.0, 15.0), "", "/"),
+    # what a coordinate comes up against, x into it; what holds it there
+    "stop": SymbolRow((SymbolPart(((0.0, -9.0), (5.0, -9.0), (5.0, 9.0), (0.0, 9.0)), True, "ink"),), "▌", "]"),
+    "latch": SymbolRow((SymbolPart(((0.0, 0.0), (-9.0, 4.5), (-9.0, -4.5)), True, "paper"),), "◁", "<"),
     # of bodies
     "centre": SymbolRow((ring(3.6, "paper"), *QUARTERS), "⊕", "+"),
     "mass": SymbolRow((ring(3.4, "ink"),), "●", "*"),
@@ -104,6 +113,9 @@ SYMBOLS: Mapping[str, SymbolRow] = {
     "turning back": SymbolRow((line(*arc(12.0, 240.0, -25.0)), head(*arc(12.0, 0.0, -35.0)[-1], 235.0))),
     "sliding": SymbolRow((line((-12.0, 12.5), (10.0, 12.5)), head(15.0, 12.5, 0.0))),
     "coil": SymbolRow((line(*SPIRAL),)),
+    "brake": SymbolRow(tuple(shoe(arc(9.0, a - 40.0, a + 40.0), arc(13.0, a + 40.0, a - 40.0)) for a in (0.0, 180.0))),
+    "brake along": SymbolRow((shoe(((-7.0, 8.0), (7.0, 8.0)), ((7.0, 12.0), (-7.0, 12.0))),)),
+    "damping": SymbolRow((line((-9.0, 10.0), (-9.0, 17.0), (9.0, 17.0), (9.0, 10.0)), line((-6.0, 12.0), (6.0, 12.0)))),
     # two sleeves, and between them what gives way
     "bushing": SymbolRow(
         (ring(9.0, "paper"), ring(3.4, "paper"), *(line(*radial(4.0, 8.4, 60.0 * k)) for k in range(6))), "⊚", "o"

@@ -17,6 +17,8 @@ from heuncli.results import Array
 
 EVEN = 0.1  # of |r'|: by how much it may change in a stretch of which bounds are told
 HALVED = 40  # times at most
+LOOKS, MOST = 8, 1000  # places in a piece that are looked at; in all, about
+NEARER = 1e-6  # of the radius: rounding
 
 
 class RolledPath(Protocol):
@@ -41,15 +43,18 @@ def left(normal: Array, slope: Array) -> Array:
     return np.asarray(across / np.sqrt(np.sum(slope * slope, axis=-1))[..., None])
 
 
-def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array]:
-    """Place, slope and bend p, p', p'' of the centre by those of the path and r''', (..., 3) each."""
+def centre(R: float, N: Array, track: tuple[Array, Array, Array, Array]) -> tuple[Array, Array, Array, Array]:
+    """Place of the centre and its derivatives p', p'', p''' by those of the path, (..., 3) each."""
     r, slope, bend, twist = track
-    b = np.sum(slope * slope, axis=-1)
-    a, a1 = np.cross(slope, bend) @ N, np.cross(slope, twist) @ N
+    b, b1 = np.sum(slope * slope, axis=-1), 2.0 * np.sum(slope * bend, axis=-1)
+    b2 = 2.0 * np.sum(bend * bend + slope * twist, axis=-1)
+    a, a1, a2 = (np.cross(one, other) @ N for one, other in ((slope, bend), (slope, twist), (bend, twist)))
     c = R / (b * np.sqrt(b))
     along = (1.0 - c * a)[..., None]
-    along1 = (-c * (a1 - 3.0 * a * np.sum(slope * bend, axis=-1) / b))[..., None]
-    return r + R * left(N, slope), along * slope, along * bend + along1 * slope
+    along1 = (-c * (a1 - 1.5 * a * b1 / b))[..., None]
+    along2 = (-c * (a2 - 3.0 * a1 * b1 / b - 1.5 * a * b2 / b + 3.75 * a * b1 * b1 / (b * b)))[..., None]
+    bent = along * bend + along1 * slope
+    return r + R * left(N, slope), along * slope, bent, along * twist + 2.0 * along1 * bend + along2 * slope
 
 
 def bounds(path: RolledPath) -> tuple[float, float]:
@@ -61,6 +66,25 @@ def bounds(path: RolledPath) -> tuple[float, float]:
     k = path.radius * B / low**2
     k1 = path.radius * (twist / low**2 + 3.0 * B * B / low**3)
     return float(np.max((1.0 + k) * high)), float(np.max((1.0 + k) * B + k1 * high))
+
+
+def meets(path: RolledPath) -> tuple[float, float] | None:
+    """Where a roller would meet another part of its path than it touches, and which; None if it does nowhere.
+
+    Of places looked at the one that is deepest in the roller, by more than rounding.
+    """
+    knots = path.knots
+    many = max(1, min(LOOKS, MOST // len(knots)))
+    inner = knots[:-1, None] + np.diff(knots)[:, None] * np.arange(many) / many
+    s = np.append(inner.ravel(), knots[-1])
+    track = path.track(s)
+    C, r = centre(path.radius, path.normal, track)[0], track[0]
+    C, r = C - r[0], r - r[0]
+    squares = np.sum(C * C, axis=1)[:, None] - 2.0 * (C @ r.T) + np.sum(r * r, axis=1)
+    i, k = np.unravel_index(np.argmin(squares), squares.shape)
+    if squares[i, k] < (path.radius * (1.0 - NEARER)) ** 2:
+        return float(s[i]), float(s[k])
+    return None
 
 
 def stretches(path: RolledPath) -> tuple[Array, Array]:

@@ -76,6 +76,22 @@ def within(e: Expression, limit: float) -> Expression:
     return combined(above, Expression.of(-limit), LARGEST, f"max({above.source}, {-limit:.9g})")
 
 
+def variable(use: Use) -> Expression:
+    """The expression that is one coordinate."""
+    return Expression(source=use[1], constant=None, uses=(use,), code=(VAR, 1))
+
+
+def above(e: Expression, limit: float) -> Expression:
+    """The expression of coordinates, not below the limit; where it comes to it, it has a branch."""
+    return combined(e, Expression.of(limit), LARGEST, f"max({e.source.strip()}, {limit:.9g})")
+
+
+def stepped(e: Expression) -> Expression:
+    """1 where an expression of coordinates is not below 0, else 0."""
+    source = f"step({e.source.strip()})"
+    return replace(e, source=source, code=(*e.code, HOLD, len(e.held), OPS["step"], 0), held=(*e.held, source))
+
+
 def combined(a: Expression, b: Expression, op: int, source: str) -> Expression:
     """An operation on two expressions, as one program."""
     uses = tuple(dict.fromkeys((*a.uses, *b.uses)))

@@ -23,6 +23,8 @@ LOOKS = 8  # places in a piece at which a path is looked at
 AT_ONCE = 2**18  # distances that are looked at together
 NEWTON = 32  # steps to the nearest place
 TRIED = 4  # of the places looked at, those from which the nearest is sought
+BEYOND = 0.01  # of a path, by which it goes on behind a stop at its end: what is at the stop is there to rounding
+AROUND = 64  # directions that are tried
 NO_PLANE = np.zeros(3)
 NO_PLANE.setflags(write=False)
 
@@ -52,16 +54,38 @@ class Path:
 
     def turned(self, R: Array) -> Path:
         """The path seen in other axes: R takes components in its own to those."""
-        return replace(self, coefficients=self.coefficients @ R.T)
+        return replace(self, coefficients=self.coefficients @ R.T, normal=R @ self.normal)
 
     def later(self, phase: float) -> Path:
         """The path with every place at a parameter that is greater by the phase."""
         return replace(self, knots=self.knots + phase) if phase else self
 
+    def beyond(self, first: bool, last: bool) -> Path:
+        """The path with its end pieces gone on a little, at its first end, its last, or both; a closed one as it is."""
+        if self.period or not (first or last):
+            return self
+        more = BEYOND * (self.last - self.first)
+        knots, pieces = self.knots.copy(), self.coefficients.copy()
+        if first:
+            knots[0] -= more
+            r, slope, bend, twist = self.track(self.first)
+            r, slope, bend = (
+                r - more * (slope - more * (bend / 2.0 - more * twist / 6.0)),
+                slope - more * (bend - more * twist / 2.0), bend - more * twist,
+            )  # fmt: skip
+            pieces[0] = r, slope, bend / 2.0, twist / 6.0
+        if last:
+            knots[-1] += more
+        return replace(self, knots=knots, coefficients=pieces)
+
     def at(self, s: Array | float) -> tuple[Array, Array, Array]:
         """Place, slope and bend of what runs along the path, or beside it, (..., 3) each; s of any shape."""
-        r, slope, bend, twist = self.track(s)
-        return centre(self.radius, self.normal, (r, slope, bend, twist)) if self.radius else (r, slope, bend)
+        return self.course(s)[:3]
+
+    def course(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
+        """The same with the third derivative."""
+        track = self.track(s)
+        return centre(self.radius, self.normal, track) if self.radius else track
 
     def track(self, s: Array | float) -> tuple[Array, Array, Array, Array]:
         """Place r of the path itself and its derivatives r', r'', r''', (..., 3) each; s of any shape."""
@@ -92,6 +116,28 @@ class Path:
         room = max(1, AT_ONCE // len(s))
         found = [self._nearest(flat[i : i + room], s, r) for i in range(0, len(flat), room)]
         return np.concatenate(found).reshape(points.shape[:-1]) if found else np.zeros(points.shape[:-1])
+
+    @property
+    def off_all_slopes(self) -> Array:
+        """A direction (3,) from which all slopes stand off well; of a path in a plane across that."""
+        t = self.at(self.looked_at)[1]
+        t = t / np.sqrt(np.sum(t * t, axis=-1))[:, None]
+        off: Array = np.linalg.eigh(t.T @ t)[1].T
+        z = 1.0 - (np.arange(AROUND) + 0.5) / AROUND  # a hemisphere, evenly
+        turns = np.arange(AROUND) * np.pi * (3.0 - np.sqrt(5.0))
+        ring = np.sqrt(1.0 - z * z)
+        off = np.vstack([off, np.stack([ring * np.cos(turns), ring * np.sin(turns), z], axis=-1)])
+        nearest = np.max(np.abs(off @ t.T), axis=1)
+        nearest[0] -= 0.5  # the plane's normal, if the path is not far from one
+        return np.asarray(off[np.argmin(nearest)])
+
+    def along(self, points: Array, counted: Array) -> Array:
+        """The parameters of the places beside points (n, 3), each on the branch about one that is counted, (n,)."""
+        room = self.last - self.first
+        low, high = counted - room, counted + room
+        if not self.period:
+            low, high = np.maximum(low, self.first), np.minimum(high, self.last)
+        return self._descended(points, counted, low, high)
 
     def near(self, point: Array, s: float) -> float:
         """The parameter of the place nearest to a point (3,) on the branch about a parameter: others may be nearer."""

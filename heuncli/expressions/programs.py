@@ -106,6 +106,10 @@ class Expression:
         """The same expression, with its place in a file."""
         return replace(self, location=location)
 
+    def named(self, source: str) -> Expression:
+        """The same expression, with what it is called where it is told of."""
+        return replace(self, source=source)
+
     @cached_property
     def pack(self) -> Pack:
         """A pack of this expression alone, its program from 0."""

@@ -167,8 +167,8 @@ class Solved(Mapping[str, "Signal"]):
         at: instants, as `--at` of that command takes them: 0.31, "first,last", "peak:joints.main.force,impulse:0".
         Raises HeunError for instants that are none, and for loads that are open.
         """
-        from heuncli.load_cases.asked import parse
         from heuncli.load_cases.gathered import gathered
+        from heuncli.telling.asked_instants import parse
         from heuncli.telling.asked_values import choice
 
         choice("load_cases", body, list(self.spec.bodies))

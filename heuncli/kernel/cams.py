@@ -21,12 +21,12 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.libm import NAN
     from heuncli.kernel.paths import path_point
     from heuncli.kernel.scene import Closure, FreedomTangent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_motion import point_along, swung
-    from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import CamContact, CamStance, Carried, PathPoint, RowTangent
 
 

@@ -27,12 +27,14 @@ if not cython.compiled:
         sub,
     )
     from heuncli.kernel.conditions import condition, condition_count, enter, measure_condition
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.jets import jet
     from heuncli.kernel.plane_rows import demanded_in_plane
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import SUM, TURN, Body, Closure, Counter, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import answered, direction_of, push
+    from heuncli.kernel.tracks import pace_of
+    from heuncli.kernel.tree import answered, push
 
 
 def measure_rows(scene: cython.pointer[Scene], t: cython.double) -> cython.void:
@@ -276,10 +278,13 @@ def push_condition(
 
 
 def count_turns(scene: cython.pointer[Scene], dy: cython.p_double) -> cython.void:
-    """Rates of the angles that are counted beside the tree (pins that were cut): n . (omega_b - omega_a)."""
+    """Rates of the angles that are counted beside the tree (pins that were cut): n . (omega_b - omega_a); of places."""
     i: cython.Py_ssize_t
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
+        if counter.track:
+            dy[counter.at] = pace_of(scene, cython.address(scene.closures[counter.track - 1]))
+            continue
         n: Vec3 = counter.axis if scene.flat else direction_of(scene, counter.a, counter.axis)
         dy[counter.at] = 0.0
         if counter.b >= 0:

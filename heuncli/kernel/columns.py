@@ -19,9 +19,10 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, add_scaled, scaled
     from heuncli.kernel.closures import measure_rows, residual_of, size_of_answer
+    from heuncli.kernel.loads import pull_along
     from heuncli.kernel.orthogonal import answer_of_row, size_of_multipliers
     from heuncli.kernel.response import answer_applied, configure
-    from heuncli.kernel.scene import APART, SHIFT, Body, Closure, Freedom, Load, Scene
+    from heuncli.kernel.scene import APART, ROPE, SHIFT, Body, Closure, Freedom, Load, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tree import kinematics, push
 
@@ -121,6 +122,9 @@ def answer_causes(
 
 def apply_again(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.void:
     """Put a load on the bodies as it was found last; within one body it moves nothing."""
+    if load.kind == ROPE:
+        pull_along(scene, load)
+        return
     if load.a == load.b:
         return
     push(scene, load.b, load.at, load.force, load.moment)

@@ -14,10 +14,12 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, sub
     from heuncli.kernel.cams import cam_part
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.meshing import mesh_part
     from heuncli.kernel.plane_rows import measure_in_plane
     from heuncli.kernel.rolling import rolling_row
     from heuncli.kernel.scene import (
+        ALONG,
         ARC,
         CAM,
         DOT,
@@ -26,6 +28,7 @@ if not cython.compiled:
         ROD,
         STRAND,
         SUM,
+        TRACK,
         TURN,
         WOUND,
         Closure,
@@ -33,7 +36,7 @@ if not cython.compiled:
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.sheaves import arc_part, strand_part, wound_part
-    from heuncli.kernel.tree import direction_of
+    from heuncli.kernel.tracks import track_row
     from heuncli.kernel.values import Carried
 
 
@@ -73,6 +76,8 @@ def measure_condition(scene: cython.pointer[Scene], row: cython.pointer[Closure]
         arc_part(scene, row)
     elif row.kind == WOUND:
         wound_part(scene, row)
+    elif row.kind == TRACK or row.kind == ALONG:
+        track_row(scene, row)
     else:
         rolling_row(scene, row)
 

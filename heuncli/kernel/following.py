@@ -40,6 +40,7 @@ if not cython.compiled:
     from heuncli.kernel.conditions import condition, condition_count
     from heuncli.kernel.course import set_time
     from heuncli.kernel.dense import clipped, interpolate, need_interpolant
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.events import see
     from heuncli.kernel.jets import jet
@@ -62,7 +63,8 @@ if not cython.compiled:
     from heuncli.kernel.selection import order_all
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Branch, Method, Run
-    from heuncli.kernel.tree import direction_of, kinematics
+    from heuncli.kernel.tracks import place_beside
+    from heuncli.kernel.tree import kinematics
 
     LOOKED_AT = 2  # parts of a step at whose ends loads are seen
 
@@ -92,6 +94,8 @@ def stand_here(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
     branch.energy = mechanical_energy(scene)
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
+        if counter.track:
+            continue
         mark: Vec3 = seen_from(scene, counter.b, direction_of(scene, counter.a, across(counter.axis)))
         branch.marks[3 * i] = mark.x
         branch.marks[3 * i + 1] = mark.y
@@ -324,6 +328,9 @@ def carry_on(scene: cython.pointer[Scene], run: cython.pointer[Run], x: cython.p
     half: cython.double = 3.141592653589793
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
+        if counter.track:
+            x[counter.at] = place_beside(scene, cython.address(scene.closures[counter.track - 1]))
+            continue
         n: Vec3 = counter.axis
         w: Vec3 = Vec3(run.branch.marks[3 * i], run.branch.marks[3 * i + 1], run.branch.marks[3 * i + 2])
         before: Vec3 = across(n)

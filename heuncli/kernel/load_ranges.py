@@ -19,14 +19,19 @@ except ImportError:
     from heuncli.kernel.shadow import cython
 
 if not cython.compiled:
-    from heuncli.kernel.algebra import Vec3, norm
+    from heuncli.kernel.algebra import norm
+    from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.libm import INFINITY
+    from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
     from heuncli.kernel.programs import Bounds, Span
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, Load, Scene, Variable
+    from heuncli.kernel.rope_ranges import bounds_of_rope
+    from heuncli.kernel.ropes import motion_of_rope
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
     from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
+    from heuncli.kernel.values import LengthBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966
 STEEPEST = 1.93  # K
@@ -38,7 +43,11 @@ def load_at_end(
     """A variable that is of a load as the bodies stand: length and its rate; a strain, and how long the span is."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
-    if variable.part == ALONG_LINE:
+    if load.kind == ROPE:
+        rope: RopeMotion = motion_of_rope(scene, load)
+        places[i] = rope.S
+        rates[i] = rope.rate
+    elif variable.part == ALONG_LINE:
         places[i] = norm(span_of(scene, load))
         rates[i] = rate_of_length(scene, load)
     else:
@@ -57,84 +66,64 @@ def range_of_load(
     """The range of such a variable; or of its rate, and of the rate of that, beside its value."""
     variable: cython.pointer[Variable] = cython.address(scene.variables[i])
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
-    V: cython.double = speed_of(points, load.a, load.p) + speed_of(points, load.b, load.q)
-    A: cython.double = acceleration_of(points, load.a, load.p) + acceleration_of(points, load.b, load.q)
-    far: cython.double = reach_of(points, load.a, load.p) + reach_of(points, load.b, load.q)
-    open_by: cython.double = scene.limits.rounding * far
-    fastest: cython.double = V
-    bend: cython.double = 0.5 * V * T
+    if variable.part == DRAWN:
+        drawn: Span = enclose(scene.programs, load.y)  # in time alone
+        return Span(value, drawn.second, anything()) if rates else Span(drawn.rate, anything(), anything())
+    of: LengthBounds = bounds_of_load(scene, points, load, i, T)
     second: Bounds = anything()
-    if load.a == load.b:
-        fastest = 0.0
-        bend = 0.0
-        second = Bounds(0.0, 0.0)
-    elif variable.part == ALONG_LINE:
-        least: cython.double = points.first_place[i]
-        if points.last_place[i] < least:
-            least = points.last_place[i]
-        least = least - 0.5 * V * T - open_by
-        if least > 0.0:
-            A = A + V * V / least
-            bend = 0.125 * A * T * T
-            second = Bounds(-A, A)
-    elif load.kind == BUSHING_SHIFT:
-        L: cython.double = points.last_rate[i] + V * T
-        spin: cython.double = spin_of(points, load.a)
-        A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
-        fastest = V + spin * L
-        bend = 0.125 * A * T * T
-        second = Bounds(-A, A)
-    else:
-        spin_a: cython.double = spin_of(points, load.a)
-        spin_b: cython.double = spin_of(points, load.b)
-        fastest = QUARTER_TURN * (spin_a + spin_b)
-        A = QUARTER_TURN * (twist_of(points, load.a) + twist_of(points, load.b) + spin_a * spin_b)
-        A = A + STEEPEST * fastest * (spin_a + spin_b)
-        bend = 0.125 * A * T * T
-        open_by = 8.0 * scene.limits.rounding
-        second = Bounds(-A, A)
-    rate: Bounds = Bounds(-fastest, fastest)
+    if of.second < INFINITY:
+        second = Bounds(-of.second, of.second)
+    rate: Bounds = Bounds(-of.rate, of.rate)
     if rates and variable.is_rate:
         return Span(value, second, anything())
     if rates:
         return Span(value, rate, second)
     if variable.is_rate:
-        if second.high < INFINITY:
-            open_by = scene.limits.rounding * V
-            rate = between(points.first_rate[i], points.last_rate[i], 0.5 * second.high * T + open_by)
+        if of.second < INFINITY:
+            rate = between(points.first_rate[i], points.last_rate[i], 0.5 * of.second * T + of.rounding * of.rate)
         return Span(rate, anything(), anything())
-    return Span(between(points.first_place[i], points.last_place[i], bend + open_by), anything(), anything())
+    beyond: cython.double = of.bend + of.rounding * of.far
+    return Span(between(points.first_place[i], points.last_place[i], beyond), anything(), anything())
+
+
+def bounds_of_load(
+    scene: cython.pointer[Scene],
+    points: cython.pointer[Orbits],
+    load: cython.pointer[Load],
+    i: cython.Py_ssize_t,
+    T: cython.double,
+) -> LengthBounds:
+    """What the motions allow of a variable that is of a load; where two points of one body are, nothing."""
+    rounding: cython.double = scene.limits.rounding
+    if load.kind == ROPE:
+        return bounds_of_rope(scene, points, load, T)
+    far: cython.double = reach_of(points, load.a, load.p) + reach_of(points, load.b, load.q)
+    if load.a == load.b:
+        return LengthBounds(0.0, 0.0, 0.0, far, rounding)
+    V: cython.double = speed_of(points, load.a, load.p) + speed_of(points, load.b, load.q)
+    A: cython.double = acceleration_of(points, load.a, load.p) + acceleration_of(points, load.b, load.q)
+    if scene.variables[i].part == ALONG_LINE:
+        least: cython.double = points.first_place[i]
+        if points.last_place[i] < least:
+            least = points.last_place[i]
+        least = least - 0.5 * V * T - rounding * far
+        if least > 0.0:
+            A = A + V * V / least
+            return LengthBounds(V, A, 0.125 * A * T * T, far, rounding)
+        return LengthBounds(V, INFINITY, 0.5 * V * T, far, rounding)
+    if load.kind == BUSHING_SHIFT:
+        L: cython.double = points.last_rate[i] + V * T
+        spin: cython.double = spin_of(points, load.a)
+        A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
+        return LengthBounds(V + spin * L, A, 0.125 * A * T * T, far, rounding)
+    spin_a: cython.double = spin_of(points, load.a)
+    spin_b: cython.double = spin_of(points, load.b)
+    turning: cython.double = QUARTER_TURN * (spin_a + spin_b)
+    A = QUARTER_TURN * (twist_of(points, load.a) + twist_of(points, load.b) + spin_a * spin_b)
+    A = A + STEEPEST * turning * (spin_a + spin_b)
+    return LengthBounds(turning, A, 0.125 * A * T * T, 8.0, rounding)
 
 
 def between(a: cython.double, b: cython.double, beyond: cython.double) -> Bounds:
     """What lies between two numbers, or so far beyond them."""
     return Bounds(a - beyond, b + beyond) if a < b else Bounds(b - beyond, a + beyond)
-
-
-def acceleration_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest acceleration of a body's point over the part."""
-    if body < 0:
-        return 0.0
-    # the dense outputs of coordinates and of rates agree to the error of a step, far better than to an eighth
-    spin: cython.double = points.spin[body]
-    return 1.125 * (points.pull[body] + (points.twist[body] + spin * spin) * norm(q))
-
-
-def speed_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """The largest speed of a body's point over the part."""
-    return 1.125 * (points.speed[body] + points.spin[body] * norm(q)) if body >= 0 else 0.0
-
-
-def reach_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
-    """How far a body's point may be from the origin."""
-    return norm(q) + (points.reach[body] if body >= 0 else 0.0)
-
-
-def spin_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast a body may turn."""
-    return 1.125 * points.spin[body] if body >= 0 else 0.0
-
-
-def twist_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
-    """How fast that may change."""
-    return 1.125 * points.twist[body] if body >= 0 else 0.0

@@ -15,12 +15,16 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, cross, dot, norm, scaled, sub
     from heuncli.kernel.bushings import bushing_energy, bushing_load
+    from heuncli.kernel.closures import push_condition
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.evaluator import value
+    from heuncli.kernel.ropes import motion_of_rope, rope_energy, rope_power
     from heuncli.kernel.scene import (
         ACTUATOR,
         BUSHING_SHIFT,
         COUPLE,
         FORCE,
+        ROPE,
         SHIFT_DAMPER,
         SHIFT_FRICTION,
         SPRING,
@@ -29,14 +33,15 @@ if not cython.compiled:
         TURN_FRICTION,
         TURN_SPRING,
         Body,
+        Closure,
         Counter,
         Load,
         Scene,
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import span_of
-    from heuncli.kernel.tree import direction_of, point_of, push
-    from heuncli.kernel.values import PointMotion
+    from heuncli.kernel.tree import point_of, push
+    from heuncli.kernel.values import PointMotion, RopeMotion
 
 
 def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
@@ -56,6 +61,8 @@ def apply_loads(scene: cython.pointer[Scene]) -> cython.double:
             power += load.power
         elif load.kind == SPRING or load.kind == ACTUATOR:
             power += pair_load(scene, load, given, there.v)
+        elif load.kind == ROPE:
+            power += rope_load(scene, load, given)
         elif load.kind >= BUSHING_SHIFT:
             shifts: cython.bint = load.kind == BUSHING_SHIFT
             power += bushing_load(scene, load, given, motion_in(scene, load, there.v, shifts))
@@ -126,8 +133,8 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
 
     A spring's torque is -k (angle - free angle) - c rate. Friction is Coulomb's, smoothed: F tanh(rate / speed),
     against the direction of the motion; in a thread the force that goes with its moment is added. Gives the power of
-    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on
-    no body (pressing.py).
+    what has no potential, less that of friction by what presses: that is found here as it is if 1 N does, and put on no
+    body (pressing.py).
     """
     axis: Vec3 = direction_of(scene, load.a, load.axis)
     slides: cython.bint = load.kind == THRUST or load.kind == SHIFT_DAMPER or load.kind == SHIFT_FRICTION
@@ -171,10 +178,32 @@ def joint_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: 
     return -load.coefficient * load.rate * load.rate if load.kind == TURN_SPRING else load.power
 
 
+def rope_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given: Vec3) -> cython.double:
+    """A rope that stretches, given its pull with the sign of a closure's multiplier; power of what has no potential."""
+    motion: RopeMotion = motion_of_rope(scene, load)
+    load.from_at = load.at
+    load.value = given.x
+    load.span = motion.S
+    load.rate = motion.rate
+    load.power = load.value * load.rate
+    pull_along(scene, load)
+    return rope_power(scene, load)
+
+
+def pull_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.void:
+    """Put what a rope pulls with on all bodies that it passes."""
+    i: cython.Py_ssize_t
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        push_condition(scene, part, load.value * part.factor)
+
+
 def potential_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
-    """Of springs and bushings as the bodies stand, 0 where they are relaxed; none of other loads [J]."""
+    """Of springs, ropes and bushings as the bodies stand, 0 where they are relaxed; none of other loads [J]."""
     stretch: cython.double = 0.0
-    if load.kind >= BUSHING_SHIFT:
+    if load.kind == ROPE:
+        return rope_energy(scene, load)
+    elif load.kind >= BUSHING_SHIFT:
         return bushing_energy(scene, load)
     elif load.kind == SPRING:
         stretch = norm(span_of(scene, load)) - load.length

@@ -15,9 +15,9 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, sub
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import Carried
 
 

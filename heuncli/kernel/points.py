@@ -29,9 +29,10 @@ if not cython.compiled:
     from heuncli.kernel.bernstein import differentiate, of_rows, range_of
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything, magnitude
-    from heuncli.kernel.load_ranges import acceleration_of, between, load_at_end, range_of_load
+    from heuncli.kernel.load_ranges import between, load_at_end, range_of_load
+    from heuncli.kernel.motion_bounds import acceleration_of
     from heuncli.kernel.programs import Bounds, Jet, Span
-    from heuncli.kernel.scene import OF_LOAD, SHIFT, Body, Freedom, Load, Scene, Variable
+    from heuncli.kernel.scene import OF_LOAD, ROPE, SHIFT, Body, Freedom, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Course, Method, Orbits, Run
     from heuncli.kernel.tree import coordinates, kinematics, point_of
@@ -87,7 +88,18 @@ def turned_far(scene: cython.pointer[Scene], length: cython.double) -> cython.bi
             load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
             if turns_far(scene, load.a, length) or turns_far(scene, load.b, length):
                 return True
+            if load.kind == ROPE and rope_turns_far(scene, load, length):
+                return True
         elif variable.is_point and turns_far(scene, variable.body, length):
+            return True
+    return False
+
+
+def rope_turns_far(scene: cython.pointer[Scene], load: cython.pointer[Load], length: cython.double) -> cython.bint:
+    """Whether a body that a rope passes turns by so much."""
+    i: cython.Py_ssize_t
+    for i in range(load.part, load.part + load.part_count):
+        if turns_far(scene, scene.parts[i].a, length) or turns_far(scene, scene.parts[i].b, length):
             return True
     return False
 

@@ -3,8 +3,8 @@
     E = E_0 + sum over k of A_k N_k          what presses in a joint, two vectors: linear in what it carries
     N_j = |E1_j| + |E2_j|                    how hard; friction is -c_j tanh(v_j / v0_j) N_j against the motion
 of a pin E1 is the joint's force and E2 nothing, of a guide what of the force is across it, of one that tilts what its
-two ends carry, E1,2 = F / 2 -+ (n x M) / length; of a thread E1 is the multiplier of its row alone. E_0 answers all loads without this friction, A_k what rubs in the k-th
-joint if N_k = 1: all by the factors that stand.
+two ends carry, E1,2 = F / 2 -+ (n x M) / length; of a thread E1 is the multiplier of its row alone. E_0 answers all
+loads without this friction, A_k what rubs in the k-th joint if N_k = 1: all by the factors that stand.
 
 B_jk = |A1_jk| + |A2_jk| bounds what a unit of N_k adds to N_j. Where 1 - B is an M-matrix (elimination leaves positive
 pivots) there is one answer and no other, whatever E_0 is: in the weights w = (1 - B)^-1 1, N -> |E(N)| is a contraction
@@ -24,6 +24,7 @@ if not cython.compiled:
     from math import fabs
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.libm import NAN
     from heuncli.kernel.scene import (
         ENDS,
@@ -40,7 +41,7 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import direction_of, push
+    from heuncli.kernel.tree import push
 
     MOST = 500  # corrections: Newton's method takes a few
 

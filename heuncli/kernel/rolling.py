@@ -18,9 +18,9 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.scene import BALL_ROLLS, BALL_TOUCHES, ROLLS, ROLLS_ASIDE, Closure, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import Carried, VectorRate, WheelContact
 
 

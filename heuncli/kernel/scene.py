@@ -17,12 +17,13 @@ from heuncli.kernel.structs import Pointer, Record, Struct
 TURN_IN_PARENT, TURN_IN_BODY, SHIFT = range(3)
 FORCE, COUPLE, SPRING, ACTUATOR, TORQUE, THRUST, TURN_SPRING = range(7)
 TURN_DAMPER, SHIFT_DAMPER, TURN_FRICTION, SHIFT_FRICTION, THREAD_FRICTION = range(7, 12)
-BUSHING_SHIFT, BUSHING_TURN = range(12, 14)
+BUSHING_SHIFT, BUSHING_TURN, ROPE = range(12, 15)
 AT_POINT, OF_LOAD = range(1, 3)  # variables that hang on where bodies are
-ALONG_LINE = 3  # of a load: its length; before that the components of its strain
+ALONG_LINE, DRAWN = range(3, 5)  # of a load: its length, and of that without load the rate; before, the strain's parts
 GUIDE, DOT, ROD, TURN, SUM, MESH, CAM = range(7)
 TOUCHES, ROLLS, ROLLS_ASIDE, BALL_TOUCHES, BALL_ROLLS = range(30, 35)  # of wheels
 STRAND, ARC, WOUND = range(7, 10)
+TRACK, ALONG = range(10, 12)  # of paths
 CARRIES, APART, LEANS = range(3)  # modes of closure rows
 GIVEN, WHOLE, ACROSS, ENDS, THRUST_OF_ROW = range(
     5
@@ -115,17 +116,17 @@ class Load(Record):
     kind: int
     a: int
     b: int
-    in_body: int  # the vector's components are in b's axes; of joint loads: reported along the axis
+    in_body: int  # the vector's components are in b's axes; of joint loads: told along the axis; of ropes: only pulls
     freedom: int  # of a turn spring: whose coordinate, and `offset`, make its angle; -1: its joint was cut
     counter: int  # that then counts its turns
     x: Program  # components of `vector` that vary; x alone for a single value
-    y: Program
+    y: Program  # of a rope: its length without load
     z: Program
     p: Vec3  # point of a, from its joint point, its axes
     q: Vec3  # point of b
     vector: Vec3  # force [N], couple [N m]; a single value (torque, thrust, actuator, size of friction) stands in x
     stiffness: float  # of a spring [N/m], of a turn spring [N m/rad]
-    length: float  # of a spring without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
+    length: float  # of a spring, rope without load [m]; of a turn spring its free angle; of a bushing its largest [rad]
     coefficient: float  # of damping [N s/m], [N m s]; of friction what its size is multiplied by
     axis: Vec3  # in a
     speed: float  # of friction: below which it falls off, tanh(rate/speed) [m/s], [rad/s]
@@ -143,13 +144,15 @@ class Load(Record):
     to_frame: Mat3  # and those in b that agree with them where it is not turned
     stiffnesses: Vec3  # along its axes [N/m], of turning [N m/rad]
     resistances: Vec3  # [N s/m], [N m s]
+    part: int  # of a rope: the first of its parts
+    part_count: int
 
     force: Vec3  # on b
     moment: Vec3
     at: Vec3  # where on b
     from_at: Vec3  # where on a
     value: float
-    span: float  # distance of the two points; of a turn spring its angle; of what presses whether it was FOUND
+    span: float  # length of the line, of a rope; of a turn spring its angle; of what presses whether it was FOUND
     strain: Vec3  # of a bushing: its shift or its turn, in its axes
     rate: float
     power: float
@@ -170,6 +173,7 @@ class Closure(Record):
     STRAND, ARC, WOUND: of a rope (sheaves.py). A strand runs from the sheave a, about e at p, to a sheave or point q of
     b; g: the radii there, positive where it runs round counter-clockwise about e, and 1, or -1 where the rope as listed
     runs from b to a. ARC, WOUND: beside the strand `part` of the same row, `radius` is such a one.
+    TRACK: across a path of a, along which a counter counts. ALONG: the coordinate of `freedom` along its path = length.
     """
 
     kind: int
@@ -199,14 +203,15 @@ class Closure(Record):
     ratio: float  # of the freedom's coordinate
     freedom_b: int
     ratio_b: float
-    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`
+    lift: int  # of a CAM: the first piece of its lift, over the angle of `freedom`; of a TRACK that of its path
     pieces: int
     period: float
     swings: int  # 1: the follower turns about g through `pivot`, both of c; 0: it slides along g
-    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q
+    faced: int  # 1: it is touched on a flat face, across h of b through q; 0: on a roller about q; of a TRACK which N
     radius: float  # of the roller; 0: a point
     pivot: Vec3
     h: Vec3
+    counter: int  # of a TRACK: which counter counts its place
     measure: float  # of its unit load: 1 of a force, the island's length of a couple
 
     f: Vec3
@@ -273,27 +278,28 @@ class PathPiece(Record):
 
 
 class Counter(Record):
-    """The angle of a pin that was cut, counted on over many turns as a state of its own."""
+    """The angle of a pin that was cut, counted on over many turns as a state of its own; or a place on a path."""
 
     a: int
     b: int
     at: int  # where it stands in the state
     axis: Vec3  # in a
+    track: int  # of a place: 1 + its TRACK among the closure rows; 0: an angle
 
-    counted: float  # the state's angle, which is right to half a turn
+    counted: float  # the state's angle, which is right to half a turn; or its place, right to its branch of the path
 
 
 class Variable(Record):
     """What expressions use: a freedom's coordinate, or (is_point) a point's place along a direction; or its rate.
 
-    Of a load (OF_LOAD) the length of its line, the rate of that, or a component of its strain.
+    Of a load (OF_LOAD) the length of its line, or the rate of that, or of a rope without load; or a part of its strain.
     """
 
     freedom: int
     is_rate: int
     is_point: int  # 0, AT_POINT, OF_LOAD
     load: int
-    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE
+    part: int  # of the load: 0, 1, 2: along which of its axes; ALONG_LINE, DRAWN
     body: int  # of the point; -1: the ground
     q: Vec3  # the point, from the body's joint point, its axes
     direction: Vec3  # unit vector, world axes
@@ -483,7 +489,7 @@ class Scene(Struct):
     freedoms: list[Freedom]
     loads: list[Load]
     closures: list[Closure]
-    parts: list[Closure]  # of those that are sums
+    parts: list[Closure]  # of those that are sums, then of the ropes among the loads
     counters: list[Counter]
     variables: list[Variable]
     pieces: list[PathPiece]

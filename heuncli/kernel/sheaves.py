@@ -22,9 +22,9 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, add_scaled, cross, dot, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.scene import Closure, Scene
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.tree import direction_of
     from heuncli.kernel.values import Carried, Strand, StrandRate
 
 WHOLE_TURN = 6.283185307179586

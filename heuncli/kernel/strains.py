@@ -17,8 +17,10 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Mat3, Quaternion, Vec3, dot, norm, product, rotate_back, scaled, sub
     from heuncli.kernel.carried_points import carried, place_of
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, Load, Scene, Variable
+    from heuncli.kernel.ropes import free_length, motion_of_rope
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
+    from heuncli.kernel.values import RopeMotion
 
 
 def axes_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
@@ -94,8 +96,13 @@ def quaternion_of(R: Mat3) -> Quaternion:
 
 
 def of_load(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
-    """The variable that is the length of a load's line, the rate of that, or a component of a bushing's strain."""
+    """The variable that is the length of a load's line or rope, its rate, or a component of a bushing's strain."""
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+    if variable.part == DRAWN:
+        return free_length(scene, load).rate
+    if load.kind == ROPE:
+        rope: RopeMotion = motion_of_rope(scene, load)
+        return rope.rate if variable.is_rate else rope.S
     if variable.part != ALONG_LINE:
         return component_of(strain_of(scene, load), variable.part)
     return rate_of_length(scene, load) if variable.is_rate else norm(span_of(scene, load))

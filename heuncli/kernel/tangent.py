@@ -30,6 +30,7 @@ if not cython.compiled:
         turned,
     )
     from heuncli.kernel.closures import push_closures
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.loads import omega_of
     from heuncli.kernel.orthogonal import solve_closures
     from heuncli.kernel.response import evaluate, find_taken
@@ -51,7 +52,8 @@ if not cython.compiled:
     from heuncli.kernel.tangent_motion import move_along, omega_along, swung
     from heuncli.kernel.tangent_pressing import carry_along, press_along
     from heuncli.kernel.tangent_strains import variables_along
-    from heuncli.kernel.tree import balance, direction_of, downward, load_along, push_lent
+    from heuncli.kernel.tangent_tracks import pace_of_along
+    from heuncli.kernel.tree import balance, downward, load_along, push_lent
 
 
 def stand_at(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
@@ -240,6 +242,9 @@ def rates_along(
             out[freedom.u_at] = freedom.udot
     for i in range(scene.counter_count):
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
+        if counter.track:
+            out[counter.at] = pace_of_along(scene, cython.address(scene.closures[counter.track - 1]))
+            continue
         n: Vec3 = direction_of(scene, counter.a, counter.axis)
         change: Vec3 = sub(omega_along(scene, counter.b), omega_along(scene, counter.a))
         turn: Vec3 = sub(omega_of(scene, counter.b), omega_of(scene, counter.a))

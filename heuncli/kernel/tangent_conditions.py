@@ -14,15 +14,16 @@ if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, norm, scaled, sub
     from heuncli.kernel.cams import cam_along
     from heuncli.kernel.carried_points import carried, place_of
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.loads import omega_of
-    from heuncli.kernel.scene import CAM, DOT, GUIDE, MESH, ROD, STRAND, TOUCHES, TURN, Closure, Scene
+    from heuncli.kernel.scene import ALONG, CAM, DOT, GUIDE, MESH, ROD, STRAND, TOUCHES, TRACK, TURN, Closure, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_meshing import mesh_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
     from heuncli.kernel.tangent_points import acceleration_at, alpha_along, alpha_at, carried_along
     from heuncli.kernel.tangent_rolling import rolling_along
     from heuncli.kernel.tangent_sheaves import strand_along
-    from heuncli.kernel.tree import direction_of
+    from heuncli.kernel.tangent_tracks import track_along
     from heuncli.kernel.values import MotionTangent, RowTangent
 
 
@@ -43,6 +44,8 @@ def condition_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) 
         return turn_row_along(scene, row, Q)
     elif row.kind == ROD:
         return rod_along(scene, row, Q)
+    elif row.kind == TRACK or row.kind == ALONG:
+        return track_along(scene, row, Q)
     elif row.kind == STRAND:
         return strand_along(scene, row)
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)

@@ -15,6 +15,7 @@ if not cython.compiled:
     from math import tanh
 
     from heuncli.kernel.algebra import Vec3, add, add_cross, add_scaled, cross, dot, norm, scaled, sub
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.jets import slope
     from heuncli.kernel.libm import NAN
     from heuncli.kernel.loads import motion_in, omega_of, sliding_in
@@ -23,6 +24,7 @@ if not cython.compiled:
         BUSHING_SHIFT,
         COUPLE,
         FORCE,
+        ROPE,
         SHIFT_DAMPER,
         SHIFT_FRICTION,
         SPRING,
@@ -32,15 +34,18 @@ if not cython.compiled:
         TURN_SPRING,
         Body,
         BodyTangent,
+        Closure,
         Load,
         Scene,
     )
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.tangent_bushings import bushing_along
+    from heuncli.kernel.tangent_conditions import condition_along
     from heuncli.kernel.tangent_motion import omega_along, point_along, swung
+    from heuncli.kernel.tangent_ropes import rope_along, rope_power_along
     from heuncli.kernel.tangent_strains import line_along
-    from heuncli.kernel.tree import direction_of, point_of
-    from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion
+    from heuncli.kernel.tree import point_of
+    from heuncli.kernel.values import BushingTangent, LineTangent, LoadTangent, PointMotion, RowTangent
 
 
 def loads_along(scene: cython.pointer[Scene]) -> cython.double:
@@ -49,6 +54,9 @@ def loads_along(scene: cython.pointer[Scene]) -> cython.double:
     power: cython.double = 0.0
     for i in range(scene.load_count):
         load: cython.pointer[Load] = cython.address(scene.loads[i])
+        if load.kind == ROPE:
+            power += pull_changed(scene, load, given_along(scene, load).x)
+            continue
         still: cython.bint = load.a < 0 or not scene.tangents[load.a].moves
         if load.b >= 0 and scene.tangents[load.b].moves:
             still = False
@@ -198,6 +206,21 @@ def elastic_along(
     push_along(scene, load.b, load.at, load.force, d)
     push_along(scene, load.a, load.at, scaled(-1.0, load.force), opposite(d))
     return found.power
+
+
+def pull_changed(scene: cython.pointer[Scene], load: cython.pointer[Load], change: cython.double) -> cython.double:
+    """A rope whose `value` changes, and the unit loads of its parts; what the power of what has no potential does."""
+    i: cython.Py_ssize_t
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        d: RowTangent = condition_along(scene, part)
+        pull: cython.double = load.value * part.factor
+        force: Vec3 = add_scaled(scaled(pull, d.f), change * part.factor, part.f)
+        moment: Vec3 = add_scaled(scaled(pull, d.m), change * part.factor, part.m)
+        own: LoadTangent = LoadTangent(d.Q, force, moment)
+        push_along(scene, part.b, part.Q, scaled(pull, part.f), own)
+        push_along(scene, part.a, part.Q, scaled(-pull, part.f), opposite(own))
+    return rope_power_along(scene, load, change, rope_along(scene, load))
 
 
 def sliding_along(scene: cython.pointer[Scene], load: cython.pointer[Load], there: PointMotion) -> Vec3:

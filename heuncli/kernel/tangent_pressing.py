@@ -15,6 +15,7 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_cross, add_scaled, cross, dot, scaled, sub
     from heuncli.kernel.closures import push_closures
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.loads import sliding_in
     from heuncli.kernel.pressing import carried_force, carried_moment, pressed_along, put_ends, put_parts, thrust
     from heuncli.kernel.scene import (
@@ -33,7 +34,7 @@ if not cython.compiled:
     from heuncli.kernel.tangent_closures import row_along
     from heuncli.kernel.tangent_loads import opposite, push_along
     from heuncli.kernel.tangent_motion import point_along, swung
-    from heuncli.kernel.tree import balance, direction_of, point_of
+    from heuncli.kernel.tree import balance, point_of
     from heuncli.kernel.values import LoadTangent
 
 

@@ -14,11 +14,12 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.algebra import Vec3, add_scaled, dot, norm, rotate, rotate_back, scaled, sub
     from heuncli.kernel.bushings import rate_of_vector
-    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, OF_LOAD, Load, Scene, Variable
+    from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, OF_LOAD, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.strains import axes_of, component_of, parting_of, span_of, strain_of
     from heuncli.kernel.tangent_motion import point_along, swung, turn_along_of
-    from heuncli.kernel.values import LineTangent, PointMotion
+    from heuncli.kernel.tangent_ropes import rope_along
+    from heuncli.kernel.values import LineTangent, PointMotion, RopeMotion
 
 
 def variables_along(scene: cython.pointer[Scene]) -> cython.void:
@@ -39,6 +40,11 @@ def variables_along(scene: cython.pointer[Scene]) -> cython.void:
 def of_load_along(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) -> cython.double:
     """Of a variable that is of a load."""
     load: cython.pointer[Load] = cython.address(scene.loads[variable.load])
+    if variable.part == DRAWN:
+        return 0.0
+    if load.kind == ROPE:
+        rope: RopeMotion = rope_along(scene, load)
+        return rope.rate if variable.is_rate else rope.S
     if variable.part == ALONG_LINE:
         line: LineTangent = line_along(scene, load)
         return line.rate if variable.is_rate else line.length

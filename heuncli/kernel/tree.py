@@ -56,6 +56,7 @@ if not cython.compiled:
         turned,
         unit_matrix,
     )
+    from heuncli.kernel.directions import direction_of
     from heuncli.kernel.jets import jet
     from heuncli.kernel.paths import run_along
     from heuncli.kernel.plane import (
@@ -213,13 +214,6 @@ def velocity_terms(body: cython.pointer[Body]) -> cython.void:
     body.centrifugal = cross(body.omega, cross(body.omega, body.mc))
     body.M_applied = zero
     body.f_applied = zero
-
-
-def direction_of(scene: cython.pointer[Scene], body: cython.int, a: Vec3) -> Vec3:
-    """World components of a direction fixed in a body, or in the ground (-1)."""
-    if body < 0:
-        return a
-    return rotate(scene.bodies[body].R, a)
 
 
 def point_of(scene: cython.pointer[Scene], body: cython.int, q: Vec3) -> PointMotion:

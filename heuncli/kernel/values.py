@@ -94,6 +94,26 @@ class StrandRate(Value):
     bend: float
 
 
+class RopeMotion(Value):
+    """The length of a rope and its rate."""
+
+    S: float
+    rate: float
+
+
+class LengthBounds(Value):
+    """Over a stretch of time: of a length, or a strain, how large its rate and its second derivative may be.
+
+    bend: how far from the chord between its ends it may be; far: of what it is the difference; rounding: relative.
+    """
+
+    rate: float
+    second: float
+    bend: float
+    far: float
+    rounding: float
+
+
 class VectorRate(Value):
     """A vector and its rate."""
 
@@ -138,6 +158,23 @@ class CamContact(Value):
 
     beside: Vec3
     n: Vec3
+
+
+class TrackFrame(Value):
+    """A direction across a path, and what it changes by along it."""
+
+    N: Vec3
+    change: Vec3
+
+
+class PlaceTangent(Value):
+    """What the place s of a path beside a point changes by: s itself, r', r'', and |r'|^2 - r'' . (D - r)."""
+
+    s: float
+    slope: Vec3
+    bend: Vec3
+    square: float  # that itself
+    squared: float  # and its change
 
 
 class MotionTangent(Value):

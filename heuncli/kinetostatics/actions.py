@@ -24,6 +24,7 @@ from heuncli.mechanism.model import (
     Mechanism,
     PairLoad,
     PointLoad,
+    RopeLoad,
     Spread,
     ThreadLoad,
 )
@@ -84,7 +85,13 @@ class Action:
             yield self.from_, -self.force, self.opposite_moment
 
     def on_ground(self) -> tuple[Array, Array, Array] | None:
-        """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere."""
+        """Force and moment ON the ground and the position that the moment is about; None where it acts elsewhere.
+
+        Of what acts between two places of the ground, as a strand of a rope, both together.
+        """
+        if self.from_ is not None and self.to.body == self.from_.body == GROUND:
+            lever = cross_rows(self.to.position - self.from_.position, self.force)
+            return np.zeros_like(self.force), self.moment + self.opposite_moment + lever, self.to.position
         if self.to.body == GROUND:
             return self.force, self.moment, self.to.position
         if self.from_ is not None and self.from_.body == GROUND:
@@ -99,7 +106,6 @@ class AppliedLoad:
     value: the force or moment of a load between two bodies, the magnitude of one from outside, of a distributed one
     that of its resultant; length and rate: of the line between its points, or of the turning or sliding of its joint,
     the magnitude where that has no one axis (of which a turn spring's angle is the length, other loads have none).
-    potential: its own, (n_t,) [J]; 0 of what has none.
     strain: of a bushing its shift and its turn, (n_t, 2, 3) [m], [rad], in its own axes.
     """
 
@@ -109,18 +115,19 @@ class AppliedLoad:
     length: Array
     rate: Array
     power: Array
-    potential: Array
     strain: Array | None = None
 
 
 def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered) -> list[AppliedLoad]:
-    """The applied loads in the order of the spec; of a joint's load the parts of its several motions together.
+    """The applied loads in the order of the spec, without ropes; of a joint's load the parts of its several motions.
 
     A load in a joint acts where the joint does, to the last bit: both pass a cut at one instant.
     """
     loads: list[AppliedLoad] = []
     first: tuple[PointLoad, LoadRows] | None = None  # of a distributed load's two parts
     for load, own in mechanism.load_rows():
+        if isinstance(load, RopeLoad):
+            continue  # its coupling tells what it exerts
         joint = mechanism.joints[load.joint] if isinstance(load, JointLoad) else None
         rows = recovered.loads[:, own]
         if isinstance(load, PointLoad) and load.spread is not None:
@@ -134,8 +141,7 @@ def applied_loads(mechanism: Mechanism, states: BodyStates, recovered: Recovered
         action = Action("load", load.name, to, from_, force, moment)
         value, span, rate = (rows[name][:, 0] for name in ("value", "span", "rate"))
         strain = rows["strain"] if isinstance(load, BushingLoad) else None
-        power, potential = (rows[name].sum(axis=1) for name in ("power", "potential"))
-        loads.append(AppliedLoad(load, action, value, span, rate, power, potential, strain))
+        loads.append(AppliedLoad(load, action, value, span, rate, rows["power"].sum(axis=1), strain))
     return loads
 
 
@@ -155,7 +161,7 @@ def distributed(parts: Sequence[tuple[PointLoad, LoadRows]]) -> AppliedLoad:
     action = Action("load", load.name, end, None, force, moment, along)
     none = np.zeros(len(force))
     power = sum((row["power"].sum(axis=1) for _, row in parts), none)
-    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power, none)
+    return AppliedLoad(load, action, np.sqrt(np.sum(force * force, axis=1)), none, none, power)
 
 
 def _ends(

@@ -12,7 +12,7 @@ from types import MappingProxyType
 import numpy as np
 
 from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import GROUND
+from heuncli.mechanism.model import GROUND, Joint
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.shapes.by_component import body_by_body, cross, instants_first, rows, turned, turned_back
@@ -205,6 +205,37 @@ def put_ways(layout: Layout, recovered: Recovered, states: CarriedStates) -> Non
         joint = layout.mechanism.joints[freedom.joint] if freedom.joint >= 0 else None
         if joint is not None and joint.path is not None and freedom.quantity == "travel":
             slope = joint.path.at(q)[1]
-            states.ways[:, joint.way] = (
-                slope if joint.a == GROUND else (states.R[:, joint.a] @ slope[..., None])[..., 0]
-            )
+            put_way(states, joint, slope)
+    for k in layout.counters:
+        joint = layout.mechanism.joints[k]
+        if joint.path is not None:
+            put_way(states, joint, joint.path.at(place_beside(layout, recovered, states, k)[0])[1])
+
+
+def put_way(states: BodyStates, joint: Joint, slope: Array) -> None:
+    """The direction of a path, (n_t, 3), which is given in the axes of its body."""
+    states.ways[:, joint.way] = slope if joint.a == GROUND else (states.R[:, joint.a] @ slope[..., None])[..., 0]
+
+
+def place_beside(layout: Layout, recovered: Recovered, states: BodyStates, k: int) -> tuple[Array, Array, Array]:
+    """Of a joint along a path that was cut: its place s there, s' and s'', (n_t,) each.
+
+    The place is that beside the point, on the branch of the path where the state counts it: (D - r) . r' = 0. Of that
+    the derivatives, by D, v and a of the point as the path's body sees them; it may lie beside its path, too.
+    """
+    joint = layout.mechanism.joints[k]
+    assert joint.path is not None
+    Q = states.point_position(joint.b, joint.q)
+    D = Q - states.point_position(joint.a, joint.p)
+    v = states.velocity(joint.b, Q) - states.velocity(joint.a, Q)
+    a = states.acceleration(joint.b, Q) - states.acceleration(joint.a, Q)
+    if joint.a != GROUND:
+        back = np.swapaxes(states.R[:, joint.a], 1, 2)
+        a = a - 2.0 * cross_rows(states.omega[:, joint.a], v)
+        D, v, a = ((back @ x[..., None])[..., 0] for x in (D, v, a))
+    s = joint.path.along(D, recovered.states[:, layout.counters[k]])
+    r, slope, bend, twist = joint.path.course(s)
+    square = np.sum(slope * slope - bend * (D - r), axis=1)
+    u = np.sum(slope * v, axis=1) / square
+    again = np.sum(twist * (D - r) - 3.0 * slope * bend, axis=1)
+    return s, u, (np.sum(slope * a + 2.0 * u[:, None] * bend * v, axis=1) + u * u * again) / square

@@ -6,7 +6,7 @@ import numpy as np
 
 from heuncli.integration.evaluator import Recovered
 from heuncli.joint_kinds import JOINTS
-from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.bodies import BodyStates, place_beside
 from heuncli.mechanism.model import Joint, Mechanism
 from heuncli.results import Array, Block
 from heuncli.shapes.rotations import cross_rows
@@ -21,7 +21,7 @@ def coordinates(layout: Layout, recovered: Recovered, states: BodyStates) -> Blo
         if "angle" in kind.coordinates:
             block[joint.name] = _turning(layout, recovered, states, k, joint)
         if kind.follows_path:
-            block[joint.name] = _along_path(layout, recovered, k)
+            block[joint.name] = _along_path(layout, recovered, states, k)
         elif "travel" in kind.coordinates:
             travel = _sliding(states, joint)
             if joint.name in block:
@@ -57,8 +57,10 @@ def _turning(layout: Layout, recovered: Recovered, states: BodyStates, k: int, j
     }
 
 
-def _along_path(layout: Layout, recovered: Recovered, k: int) -> Block:
-    """Of a joint that is never cut: the path's parameter."""
+def _along_path(layout: Layout, recovered: Recovered, states: BodyStates, k: int) -> Block:
+    """The path's parameter: a freedom of the tree, or what follows from the pose."""
+    if k in layout.counters:
+        return dict(zip(("travel", "speed", "acceleration"), place_beside(layout, recovered, states, k), strict=True))
     own = next(i for i, f in enumerate(layout.freedoms) if (f.joint, f.quantity) == (k, "travel"))
     found = recovered.freedoms
     return {"travel": found["q"][:, own], "speed": found["u"][:, own], "acceleration": found["udot"][:, own]}

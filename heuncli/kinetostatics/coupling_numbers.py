@@ -90,7 +90,8 @@ def of_wheel(loads: CouplingLoads) -> list[CoupledNumber]:
 
 def of_rope(loads: CouplingLoads) -> list[CoupledNumber]:
     """Its tension; where sheaves hold it that before the first of them, and that behind the last."""
-    found = [CoupledNumber("tension", 0.0 - loads.multipliers[0], (0,), factor=-1.0)]
+    held = (0,) if loads.rows else ()  # that of one that stretches hangs on no condition
+    found = [CoupledNumber("tension", 0.0 - loads.multipliers[0], held, factor=-1.0 if held else 0.0, linear=True)]
     if len(loads.multipliers) > 1:
         found.append(
             CoupledNumber("last_tension", 0.0 - loads.multipliers[-1], (len(loads.multipliers) - 1,), factor=-1.0)

@@ -87,6 +87,7 @@ class PartLoad:
 class CouplingLoads:
     """What a coupling exerts; multipliers: of its rows, (..., n_t) each.
 
+    A rope that stretches has no row, and its load's value for a multiplier.
     friction: of a thread, by what its row carries. It stands among the applied loads, and is told here with the rest.
     """
 
@@ -107,7 +108,7 @@ class CouplingLoads:
         """What its load is called: a moment, where it loads by couples alone; of a cam the force of contact."""
         if self.coupling.given.type == "cam":
             return "contact"
-        return "moment" if self.coupling.rows[0].is_couple else "force"
+        return "moment" if self.coupling.carriers[0].is_couple else "force"
 
     @property
     def carried(self) -> Array:
@@ -119,24 +120,28 @@ class CouplingLoads:
         return size * self.multipliers[0]
 
     def of_multipliers(self, multipliers: Array) -> CouplingLoads:
-        """What it would exert with other multipliers of all rows, (..., n_t, rows)."""
+        """What it would exert with other multipliers of all rows, (..., n_t, rows): by what stretches nothing."""
         own = tuple(multipliers[..., r] for r in self.rows)
+        if self.coupling.stretched is not None:
+            own = (np.zeros(multipliers.shape[:-1]),)
+        if not self.parts:
+            return CouplingLoads(self.coupling, self.rows, own, ())
         places = iter(self.parts)
         parts = tuple(
             next(places).of_multiplier(multiplier)
-            for row, multiplier in zip(self.coupling.rows, own, strict=True)
+            for row, multiplier in zip(self.coupling.carriers, own, strict=True)
             for _ in row.parts
         )
         return CouplingLoads(self.coupling, self.rows, own, parts)
 
     def parts_of_rows(self) -> Iterator[tuple[int, PartLoad]]:
         """The parts, each with the closure row that it belongs to."""
-        owners = (r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts)
-        return zip(owners, self.parts, strict=True)
+        owners = [r for r, row in zip(self.rows, self.coupling.rows, strict=True) for _ in row.parts]
+        return zip(owners, self.parts, strict=self.coupling.stretched is None)
 
     def plus(self, more: Array | None) -> CouplingLoads:
         """With what is added to the multipliers of all rows, (..., n_t, rows); None: nothing."""
-        if more is None:
+        if more is None or self.coupling.stretched is not None:
             return self
         whole = np.zeros_like(more)
         for r, multiplier in zip(self.rows, self.multipliers, strict=True):
@@ -149,7 +154,8 @@ class CouplingLoads:
         beside: what it exerts besides, as the pretension of a belt.
         """
         found: dict[int, tuple[Array, Array, Array]] = {}
-        parts = sorted(self.parts, key=lambda own: not own.part.lies)  # of sheaves their centres come first
+        loading = (own for own in self.parts if not own.part.counts_alone)
+        parts = sorted(loading, key=lambda own: not own.part.lies)  # of sheaves their centres come first
         rubs = () if self.friction is None else (self.friction,)
         held = (on for part in parts for on in part.on_both)
         given = ((end.body, end.position, F, M) for action in (*beside, *rubs) for end, F, M in action.on_bodies())
@@ -169,23 +175,32 @@ def coupling_loads(
             continue
         rows = tuple(r for r, k in enumerate(layout.rows) if k == owner)
         multipliers = tuple(recovered.rows["multiplier"][..., r] for r in rows)
+        firsts = [int(layout.tables["closures"][r]["part"]) for r in rows]
+        if coupling.stretched is not None:
+            multipliers, firsts = _pull(layout, coupling.name, recovered)
         parts: list[PartLoad] = []
-        for r, row, multiplier in zip(rows, coupling.rows, multipliers, strict=False):
-            parts += _part_loads(layout, r, row.parts, multiplier, recovered, states)
+        for first, row, multiplier in zip(firsts, coupling.carriers, multipliers, strict=False):
+            parts += _part_loads(first, row.parts, multiplier, recovered, states)
         found.append(CouplingLoads(coupling, rows, multipliers, tuple(parts)))
     return found
 
 
+def _pull(layout: Layout, name: str, recovered: Answers) -> tuple[tuple[Array], list[int]]:
+    """The value of a rope that stretches, and where its parts begin; none in a blow, in which it does not stretch."""
+    k, values = layout.mechanism.row_of_rope(name), recovered.loads["value"]
+    if k < 0 or values.shape[-1] <= k:
+        return (np.zeros(values.shape[:-1]),), []
+    return (values[..., k],), [int(layout.tables["loads"][k]["part"])]
+
+
 def _part_loads(
-    layout: Layout,
-    r: int,
+    first: int,
     parts: Sequence[CouplingPart],
     multiplier: Array,
     recovered: Answers,
     states: BodyStates,
 ) -> Iterator[PartLoad]:
-    """The loads of the parts of one row."""
-    first = int(layout.tables["closures"][r]["part"])
+    """The loads of the parts of one row, from the first of them on."""
     for k, part in enumerate(parts, first):
         f, m, Q, on_a, on_b = (recovered.parts[name][:, k] for name in ("f", "m", "Q", "on_a", "on_b"))
         if part.on_a is not None:
@@ -195,11 +210,16 @@ def _part_loads(
         yield PartLoad(part, on_b, on_a, f, m + cross_rows(Q - on_b, f), m_a, multiplier, pushed)
 
 
+def rope_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
+    """What ropes that stretch exert: as loads do, each by a law of its own."""
+    return coupling_actions([own for own in couplings if own.coupling.stretched is not None])
+
+
 def coupling_actions(couplings: Sequence[CouplingLoads]) -> list[Action]:
     """What they exert, an action a part."""
     return [
         Action("coupling", own.coupling.name, *part.ends, part.force, part.moment, opposite=part.moment_on_a)
         for own in couplings
         for part in own.parts
-        if not part.part.lies
+        if not (part.part.lies or part.part.counts_alone)
     ]

@@ -115,7 +115,9 @@ def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
         joint = mechanism.joints[stop.joint]
         if joint.a == body and stop.quantity == "travel":
             limits = [limit for limit in (stop.low, stop.high) if limit is not None]
-            points += [(f"stop {stop.name}", joint.p + limit * joint.axis) for limit in limits]
+            for limit in limits:
+                way = limit * joint.axis if joint.path is None else joint.path.at(limit)[0]
+                points.append((f"stop {stop.name}", joint.p + way))
     return points
 
 

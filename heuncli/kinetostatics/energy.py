@@ -19,7 +19,7 @@ from heuncli.shapes.rotations import cross_rows
 from heuncli.tree.layout import Layout
 
 
-def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> Block:
+def energy(layout: Layout, recovered: Recovered, states: BodyStates) -> Block:
     """Kinetic energy, potential energy (gravity from the world's origin, loads), work of all else, (n_t,) [J]."""
     mechanism = layout.mechanism
     m = np.array([b.mass for b in mechanism.bodies])
@@ -28,8 +28,7 @@ def energy(layout: Layout, recovered: Recovered, states: BodyStates, loads: Sequ
     kinetic = 0.5 * np.einsum("n,tni,tni->t", m, states.v_centre, states.v_centre)
     kinetic = kinetic + 0.5 * np.einsum("tni,nij,tnj->t", w, inertia, w)
     potential = -np.einsum("n,tni,i->t", m, states.centre, mechanism.gravity)
-    for load in loads:
-        potential = potential + load.potential
+    potential = potential + recovered.loads["potential"].sum(axis=1)
     work = recovered.states[:, layout.work_at] if layout.work_at >= 0 else np.zeros_like(kinetic)
     return {"kinetic": kinetic, "potential": potential, "work": work}
 
@@ -77,7 +76,7 @@ def power_imbalance(
         if joint.drive is not None and joint.joint.drive is not None:
             power = power + joint.drive * drive_rate(states, joint)
     for coupling in couplings:
-        if coupling.coupling.law is not None:
+        if coupling.coupling.law is not None or coupling.coupling.stretched is not None:
             power = power + power_of_rope(states, coupling)
     return float(np.abs(power - gain).max(initial=0.0)) * span
 

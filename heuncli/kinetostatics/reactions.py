@@ -168,6 +168,10 @@ class Answers(Protocol):
         """multiplier (..., n_t, rows); f, m (n_t, rows, 3), closed (n_t, rows)."""
 
     @property
+    def loads(self) -> Named:
+        """value (..., n_t, loads); in a blow of none."""
+
+    @property
     def parts(self) -> Named:
         """Of the rows that are sums: f, m, Q, on_a, on_b (n_t, parts, 3)."""
 
@@ -235,7 +239,13 @@ def stop_loads(layout: Layout, joint: int, rows: Named) -> tuple[StopLoad, ...]:
         own = [contact.row for contact in layout.contacts if contact.name == stop.name and not contact.is_rope]
         units = np.concatenate([rows["f"][..., own, :], rows["m"][..., own, :]], axis=-1)
         unit = np.max(rows["closed"][..., own, None], axis=-2) * units[..., 0, :]  # of both limits it is the same
-        found.append(StopLoad(stop, rows["multiplier"][..., own].sum(axis=-1), unit))
+        values = rows["multiplier"][..., own]
+        if (
+            layout.mechanism.joints[joint].path is not None
+        ):  # a unit of the row is of the coordinate, whatever it counts
+            sizes = np.sqrt(np.sum(units * units, axis=-1))
+            values, unit = values * sizes, unit / sizes[..., :1]
+        found.append(StopLoad(stop, values.sum(axis=-1), unit))
     return tuple(found)
 
 

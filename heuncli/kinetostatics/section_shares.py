@@ -60,7 +60,7 @@ def section_shares(
 
 def loads_by_cause(cuts: Cuts, layout: Layout, states: BodyStates, shares: Shares) -> tuple[Array, Array]:
     """What the piece's inertia and the joints on it make of every cause, (3, n_c, n_t, k)."""
-    actions = [*whole_joint_actions(shares.joints), *coupling_actions(shares.couplings)]
+    actions = [*whole_joint_actions(shares.joints), *coupling_actions(shares.held)]
     joints = attachments(cuts.body, states, actions)
     return piece_loads(cuts, acceleration_matrix_by_cause(cuts.body, layout, states, shares), joints)
 
@@ -70,9 +70,9 @@ def direct_loads(cuts: Cuts, gravity: Array, states: BodyStates, shares: Shares)
     none = np.zeros((len(states.x), 3))
     weight = accelerations_as_matrix(none, none, in_body_axes(states.R[:, cuts.body], none - gravity))
     found = {GRAVITY: piece_loads(cuts, weight, [])} if GRAVITY in shares.causes else {}
-    for action in shares.applied:
-        if on := attachments(cuts.body, states, [action]):
-            found[action.name] = piece_loads(cuts, np.zeros_like(weight), on)
+    for name in dict.fromkeys(action.name for action in shares.applied):
+        if on := attachments(cuts.body, states, [action for action in shares.applied if action.name == name]):
+            found[name] = piece_loads(cuts, np.zeros_like(weight), on)
     return found
 
 

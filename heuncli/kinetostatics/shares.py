@@ -41,6 +41,7 @@ class Column:
     bodies: dict[str, Array]
     freedoms: dict[str, Array]
     rows: dict[str, Array]
+    loads: dict[str, Array]
     parts: dict[str, Array]
 
 
@@ -57,6 +58,11 @@ class Shares:
     joints: list[JointLoads]
     couplings: list[CouplingLoads]
     applied: list[Action]
+
+    @property
+    def held(self) -> list[CouplingLoads]:
+        """The couplings that hold something: ropes that stretch are among what is applied."""
+        return [own for own in self.couplings if own.coupling.stretched is None]
 
     def place(self, cause: str) -> int:
         """Of a cause, on the axis of causes."""
@@ -130,7 +136,12 @@ def column_of(recovered: Recovered, columns: Columns, members: Members) -> Colum
     bodies = {name: by_cause(columns.bodies[name]) for name in ("alpha", "a", "joint_moment", "joint_force")}
     rows = {name: recovered.rows[name] for name in ("f", "m", "closed")} | {"multiplier": by_cause(columns.multipliers)}
     parts = {name: recovered.parts[name] for name in ("f", "m", "Q", "on_a", "on_b")}
-    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, parts)
+    value = recovered.loads["value"]
+    alone = np.zeros((len(members), *value.shape))
+    for c, own in enumerate(members.values()):
+        of_load = [k for k in own if k < value.shape[1]]
+        alone[c][:, of_load] = value[:, of_load]
+    return Column(bodies, {"drive": by_cause(columns.freedoms["drive"])}, rows, {"value": alone}, parts)
 
 
 def joint_shares(shares: Shares, load: JointLoads) -> Block:
@@ -153,7 +164,7 @@ def foundation_shares(
     parts: dict[tuple[str, ...], Block] = {}
     inner = [action for action in shares.applied if action.from_ is not None]
     standing = [*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]
-    for keys, on in on_ground([*standing, *coupling_actions(shares.couplings)]).items():
+    for keys, on in on_ground([*standing, *coupling_actions(shares.held)]).items():
         force, moment = force + on.force, moment + cross_rows(on.about - about, on.force) + on.moment
         parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:

@@ -1,6 +1,7 @@
 """What a screw with friction carries in all, and what of the power that goes in comes out.
 
-    force = N - friction along the axis      torque = N lead / (2 pi) + friction about it       N: what the flanks press with
+    force = N - friction along the axis        torque = N lead / (2 pi) + friction about it
+N is what the flanks press with along the axis.
     force rise - torque = -loss / rate       rise = lead / (2 pi), the travel for a unit of turning
 Of the two powers, force rise rate INTO what slides and -torque rate INTO what turns, the one above zero comes out.
 """
@@ -30,13 +31,17 @@ def whole_load(loads: CouplingLoads) -> tuple[Array, Array]:
     return force + sense * along, torque + sense * about
 
 
-def efficiency(loads: CouplingLoads) -> Array:
-    """The power that comes out by the power that goes in, (n_t,); 0 where none comes out, nan where nothing rubs."""
+def efficiency(loads: CouplingLoads, none: float) -> Array:
+    """The power that comes out by the power that goes in, (n_t,); at rest 1, for nothing rubs, and 0 without a load.
+
+    none: a thrust that is none beside the loads of the scene [N].
+    """
     given = loads.coupling.given
     assert isinstance(given, Screw)
     force, torque = whole_load(loads)
+    carries = np.abs(force) > none
     force = force * (given.lead / math.tau)
-    turns = np.sign(torque - force)  # the way it turns, for friction takes power
+    turns = np.where(torque < force, -1.0, 1.0)  # the way it turns, for friction takes power
     into = np.stack([turns * force, -turns * torque])
-    with np.errstate(invalid="ignore"):
-        return np.maximum(into.max(axis=0), 0.0) / np.maximum(-into.min(axis=0), 0.0)
+    out, taken = np.maximum(into.max(axis=0), 0.0), -into.min(axis=0)
+    return np.where(carries & (taken > 0.0), out / np.where(taken > 0.0, taken, 1.0), 0.0)

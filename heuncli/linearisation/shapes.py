@@ -53,7 +53,7 @@ def of_joint(layout: Layout, found: Linearised, joint: Joint) -> dict[str, Array
     elif kind.ball_in_tree or kind.turns:
         rows |= dict(zip(AXES, turn, strict=True))
     if joint.path is not None:
-        rows["travel"] = along_path(layout, joint)
+        rows["travel"] = along_path(layout, joint, found, shift)
     elif len(kind.shifts) == 1:
         rows["travel"] = axis @ shift
     elif kind.shifts:
@@ -61,10 +61,15 @@ def of_joint(layout: Layout, found: Linearised, joint: Joint) -> dict[str, Array
     return rows
 
 
-def along_path(layout: Layout, joint: Joint) -> Array:
-    """Of the parameter of a path: a freedom of the tree, which is never cut."""
-    names = [own.name for own in layout.mechanism.joints]
-    own = next(f for f in layout.freedoms if f.joint >= 0 and names[f.joint] == joint.name and f.quantity == "travel")
+def along_path(layout: Layout, joint: Joint, found: Linearised, shift: Array) -> Array:
+    """Of the parameter of a path: a freedom of the tree, or r' . shift / |r'|^2, where it was cut."""
+    k = next(k for k, own in enumerate(layout.mechanism.joints) if own.name == joint.name)
+    if k in layout.counters:
+        assert joint.path is not None
+        slope = joint.path.at(float(found.state[layout.counters[k]]))[1]
+        way = slope if joint.a == GROUND else found.attitudes[layout.place[joint.a]] @ slope
+        return np.asarray(way @ shift / (slope @ slope))
+    own = next(f for f in layout.freedoms if (f.joint, f.quantity) == (k, "travel"))
     places = places_of_rates(layout)
     return np.where(places[places >= 0] == own.u, 1.0, 0.0)
 

@@ -16,7 +16,7 @@ from heuncli import tolerances
 from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
 from heuncli.linearisation.steady_motion import Looked
-from heuncli.mechanism.model import PairLoad
+from heuncli.mechanism.model import PairLoad, path_of_load
 from heuncli.response import variables_at
 from heuncli.results import Array
 
@@ -60,7 +60,7 @@ def differing(programs: Any, here: Looked, variables: Array, own: list[float], m
         (value, slope), (other, turned) = (on_branches(programs, start, count, variables, b) for b in (own, met))
         size = 1.0 + abs(value) + np.abs(slope).max()
         if not max(abs(value - other), np.abs(slope - turned).max()) <= tolerances.KINK * size:
-            yield f"forces.{load} jumps or bends there"
+            yield f"{load} jumps or bends there"
 
 
 def expressions(here: Looked) -> Any:
@@ -78,7 +78,7 @@ def programs_of(here: Looked) -> list[tuple[str, int, int]]:
     """The programs of all loads: whose, and where they stand."""
     table = here.layout.tables["loads"]
     return [
-        (load.name, int(row[part]["start"]), int(row[part]["count"]))
+        (path_of_load(load), int(row[part]["start"]), int(row[part]["count"]))
         for load, rows in here.layout.mechanism.load_rows()
         for row in table[rows]
         for part in "xyz"

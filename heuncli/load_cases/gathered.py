@@ -11,7 +11,6 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError, UsageError
 from heuncli.load_cases.actions import actions_on, fields_of
-from heuncli.load_cases.asked import AskedInstant, TakenInstant, taken
 from heuncli.load_cases.model import LoadCase, LoadCases, LoadedBody
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import replace
@@ -21,6 +20,7 @@ from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery, certain_sums
 from heuncli.study.model.selection import Selection
+from heuncli.telling.asked_instants import AskedInstant, TakenInstant, taken
 
 BALANCED = 1e-9  # of the largest: loads of one instant are answered together, and sum up to rounding
 MOST_SUMS = 4  # that are named in a refusal

@@ -100,6 +100,11 @@ class CouplingPart:
         return self.kind in ("arc", "wound")
 
     @property
+    def counts_alone(self) -> bool:
+        """Whether it counts by coordinates for another part, and loads nothing."""
+        return self.kind == "mesh" and self.a == self.b
+
+    @property
     def places(self) -> tuple[tuple[int, Array], ...]:
         """Bodies with the points at which it looks at them, body axes."""
         if self.is_couple:
@@ -139,21 +144,35 @@ class CoupledRow:
 
 @record
 class Coupling:
-    """A coupling and its conditions; given: as the spec means it."""
+    """A coupling and its conditions; given: as the spec means it.
+
+    stretched: of a rope that stretches what would be its condition; a load pulls along its parts (RopeLoad).
+    """
 
     name: str
     rows: tuple[CoupledRow, ...]
     given: spec.Coupling
+    stretched: CoupledRow | None = None
+
+    @property
+    def carriers(self) -> tuple[CoupledRow, ...]:
+        """What it loads the bodies by: its conditions, or what a load pulls along."""
+        return self.rows if self.stretched is None else (self.stretched,)
 
     @property
     def bodies(self) -> frozenset[int]:
         """All bodies that it looks at, without the ground."""
-        return frozenset(i for row in self.rows for part in row.parts for i in part.bodies if i != GROUND)
+        return self.ends - {GROUND}
+
+    @property
+    def ends(self) -> frozenset[int]:
+        """The same, with the ground where it looks at that."""
+        return frozenset(i for row in self.carriers for part in row.parts for i in part.bodies)
 
     @property
     def law(self) -> Expression | None:
-        """What tells a rope's length in time; None where that stays."""
-        return self.given.law if isinstance(self.given, spec.Rope) else None
+        """What prescribes a rope's length in time; None where that stays, or the rope stretches."""
+        return self.given.law if isinstance(self.given, spec.Rope) and not self.given.stretches else None
 
     @property
     def joints(self) -> frozenset[int]:

@@ -15,7 +15,7 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.couplings import Coupling, CouplingPart
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
@@ -197,6 +197,40 @@ class BushingLoad:
 
 
 @record
+class RopeLoad:
+    """A rope that stretches: value [N], with the sign of a closure's multiplier, times the unit loads of its parts.
+
+    It has the name of its coupling. stiffness [N/m] is that at the length [m] without load, which `law` tells in time
+    if it is given; only_pulls: it keeps no work where it is shorter.
+    """
+
+    name: str
+    parts: tuple[CouplingPart, ...]
+    value: Expression
+    stiffness: float
+    length: float
+    law: Expression | None
+    damping: float
+    only_pulls: bool
+    kind: str = "rope"
+
+    @property
+    def values(self) -> tuple[Expression, ...]:
+        """Its values in time: the pull, then the length without load where that varies."""
+        return (self.value,) if self.law is None else (self.value, self.law)
+
+    @property
+    def is_conservative(self) -> bool:
+        """Whether it has a potential."""
+        return self.damping == 0.0 and self.law is None
+
+    @property
+    def points(self) -> tuple[tuple[int, Array], ...]:
+        """Bodies with the points at which it acts on them, body axes."""
+        return tuple(place for part in self.parts if not part.lies for place in part.places)
+
+
+@record
 class ThreadLoad:
     """What rubs in a thread between the bodies a and b, by what its flanks press with along its axis; ON b at q.
 
@@ -231,7 +265,12 @@ class ThreadLoad:
         return ((self.b, self.q),)
 
 
-Load = PointLoad | PairLoad | JointLoad | BushingLoad | ThreadLoad
+Load = PointLoad | PairLoad | JointLoad | BushingLoad | ThreadLoad | RopeLoad
+
+
+def path_of_load(load: Load) -> str:
+    """Where a load stands in the spec, or in the results."""
+    return f"{'couplings' if isinstance(load, RopeLoad | ThreadLoad) else 'forces'}.{load.name}"
 
 
 class Law(NamedTuple):
@@ -317,6 +356,10 @@ class Mechanism:
                 count = 2
             yield load, slice(at, at + count)
             at += count
+
+    def row_of_rope(self, name: str) -> int:
+        """Which row of that table is a rope's that stretches; -1: none, for loads are left out of the scene."""
+        return next((own.start for x, own in self.load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
 
     @property
     def rubbing(self) -> tuple[JointLoad | ThreadLoad, ...]:

@@ -2,14 +2,14 @@
 
     travel = lead / (2 pi) angle                       in the coordinates of the joints, less where they started
     f = e,  m = lead / (2 pi) n                        per unit of thrust ON what slides, along its travel
-The thread's two flanks both carry, so that thrust and torque may have either sign. What rubs on them, at the mean radius
-r, is mu times what presses square to the flank, against the sliding along it. Of the slope tan(lambda) = |lead| / (2 pi r)
-and of N, what the condition presses with along the axis (its multiplier), it is
+The thread's two flanks both carry, so that thrust and torque may have either sign. What rubs on them, at the mean
+radius r, is mu times what presses square to the flank, against the sliding along it. Of the slope lambda, of
+tan(lambda) = |lead| / (2 pi r), and of N, what the condition presses with along the axis (its multiplier), it is
     mu r |N|              about the axis               mu tan(lambda) |N|              along it
 since both share the cosine of lambda. With tan(rho) = mu that is the square thread's law, exactly:
     M / F = r (tan(lambda) +- mu) / (1 -+ mu tan(lambda)) = r tan(lambda +- rho)
-Decker, Maschinenelemente, screws of motion; Shigley, power screws, (8-1), (8-2). A flank that is inclined by beta presses
-with 1 / cos(beta) more (spec/resolve_couplings.py).
+Shigley, Mechanical Engineering Design, power screws, (8-1), (8-2). A flank that is inclined by beta presses with
+1 / cos(beta) more (spec/resolve_couplings.py).
 """
 
 from __future__ import annotations
@@ -46,6 +46,8 @@ def screw_row(given: c.Screw, joints: Sequence[Joint], bodies: Sequence[Body], o
     counted = [Coordinate(x.joint, x.quantity, x.ratio * nut.sign) for x in nut.coordinates]
     counted += [Coordinate(x.joint, x.quantity, -by * x.ratio * spindle.sign) for x in spindle.coordinates]
     f, m = nut.sign * nut.axis, by * spindle.sign * spindle.axis
+    if spindle.along is not None:  # a spindle that slides takes its thread with it
+        counted.append(Coordinate(spindle.along.joint, "travel", -float(f @ spindle.axis) * spindle.along.ratio))
     return CoupledRow(mesh_parts(spindle.body, nut.body, carrier, spindle.point, f, m, counted))
 
 
@@ -71,8 +73,8 @@ def friction_of(
 ) -> ThreadLoad:
     """What rubs in a thread, ON the spindle, or in a cylinder ON its `to`; of: as of its condition, which there is.
 
-    The thread holds the sliding of b as seen from a at `rise` times its turning about the axis: the force along the axis
-    is rise / r^2 times the torque, which is against the turning.
+    The thread holds the sliding of b as seen from a at `rise` times its turning about the axis: the force along the
+    axis is rise / r^2 times the torque, which is against the turning.
     """
     by, torque = given.lead / math.tau, rubs.coefficient * rubs.radius
     if of[0] == of[1]:

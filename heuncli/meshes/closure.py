@@ -12,7 +12,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from heuncli.errors import Finding
-from heuncli.meshes.model import Numbers, Soup, components, crossed, least, most, tetrahedra
+from heuncli.meshes.model import Numbers, Soup, components, crossed, in_order, least, most, numbered
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
@@ -41,21 +41,19 @@ def edges_of(triangles: Numbers) -> MeshEdges:
     ends = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=-1).reshape(-1, 2)
     low, high = np.minimum(ends[:, 0], ends[:, 1]), np.maximum(ends[:, 0], ends[:, 1])
     key = low * (int(triangles.max(initial=0)) + 1) + high
-    order = np.argsort(key, kind="stable")
+    order = in_order(key)
     ordered = key[order]
     starts = np.flatnonzero(np.append(True, ordered[1:] != ordered[:-1])) if len(key) else np.empty(0, np.intp)
     return MeshEdges(ends, order, starts, np.diff(np.append(starts, len(key))))
 
 
-def loose_corners(triangles: Numbers) -> Numbers:
+def loose_corners(edges: MeshEdges) -> Numbers:
     """The corners of edges that one triangle alone has."""
-    edges = edges_of(triangles)
     return np.unique(edges.ends[edges.order[edges.starts[edges.counts == 1]]])
 
 
-def neighbours(soup: Soup) -> tuple[Numbers, Numbers]:
+def neighbours(soup: Soup, edges: MeshEdges) -> tuple[Numbers, Numbers]:
     """The two triangles of each edge. Raises Finding: open, more than two triangles, or not oriented alike."""
-    edges = edges_of(soup.triangles)
     single = edges.counts == 1
     if single.any():
         own = edges.order[edges.starts[single]]
@@ -101,15 +99,15 @@ class Shells(NamedTuple):
     turned: bool
 
 
-def shells_of(soup: Soup, beside: tuple[Numbers, Numbers]) -> Shells:
-    """The shells of a surface that does not cross itself; beside: the two triangles of each edge. Raises Finding."""
-    first = components(len(soup.triangles), *beside)
-    number: Numbers = np.unique(first, return_inverse=True)[1].reshape(-1).astype(np.intp)
-    middle = 0.5 * (soup.corners.min(axis=0) + soup.corners.max(axis=0))
-    (a, b, c), V = tetrahedra(soup.corners, soup.triangles, middle)
+def shells_of(soup: Soup, beside: tuple[Numbers, Numbers], V: Array) -> Shells:
+    """The shells of a surface that does not cross itself. Raises Finding.
+
+    beside: the two triangles of each edge; V (m,): the volumes that triangles enclose with the middle of all.
+    """
+    number = numbered(components(len(soup.triangles), *beside))[1]
     volumes: Array = np.asarray(np.bincount(number, V), dtype=np.float64)
     whole = float(volumes.sum())
-    size = float(np.abs(np.stack([a, b, c])).max()) ** 3
+    size = (0.5 * float(np.ptp(soup.corners, axis=0).max())) ** 3
     if not abs(whole) > size * np.finfo(float).eps * 64.0:
         raise Finding("mesh-orientation", "the surface encloses no volume", "a solid has a volume: is it flat?")
     if len(volumes) == 1:

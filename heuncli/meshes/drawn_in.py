@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.meshes.model import Numbers, components
+from heuncli.meshes.model import Numbers, components, numbered
 from heuncli.results import Array, Mask
 
 BLUNT = 0.25  # the least cosine between a corner's direction and the normals there: a sharper one moves less
@@ -49,7 +49,7 @@ def parted(corners: Array, triangles: Numbers, beside: tuple[Numbers, Numbers]) 
             same = triangles[a, i] == triangles[b, j]
             links.append((places[a[same], i], places[b[same], j]))
     one, other = (np.concatenate([link[k] for link in links]) for k in (0, 1))
-    fans, number = np.unique(components(3 * m, one, other), return_inverse=True)
-    if len(fans) == len(np.unique(triangles)):
+    fans, number = numbered(components(3 * m, one, other))
+    if len(fans) == len(corners):
         return corners, triangles
-    return corners[triangles.ravel()[fans]], np.asarray(number, dtype=np.intp).reshape(m, 3)
+    return corners[triangles.ravel()[fans]], number.reshape(m, 3)

@@ -41,15 +41,27 @@ class Soup:
     triangles: Numbers
 
 
+def along(a: Array, b: Array) -> Array:
+    """a . b of columns (3, ...)."""
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def across(a: Array, b: Array) -> Array:
+    """a x b of columns (3, ...)."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def at_corners(places: Array, triangles: Numbers) -> Array:
+    """Places (n, 3) of the corners of triangles, in columns: (3 corners, 3 axes, m)."""
+    columns = np.ascontiguousarray(places.T)
+    return np.stack([columns.take(numbers, axis=1) for numbers in triangles.T])
+
+
 def tetrahedra(corners: Array, triangles: Numbers, middle: Array) -> tuple[Array, Array]:
-    """Corners (3, m, 3) from the middle on, and volumes (m,), of the tetrahedra between it and triangles."""
-    a, b, c = (corners - middle)[triangles.T]
-    V = (
-        a[:, 0] * (b[:, 1] * c[:, 2] - b[:, 2] * c[:, 1])
-        + a[:, 1] * (b[:, 2] * c[:, 0] - b[:, 0] * c[:, 2])
-        + a[:, 2] * (b[:, 0] * c[:, 1] - b[:, 1] * c[:, 0])
-    ) / 6.0
-    return np.stack([a, b, c]), V
+    """Corners (3, 3, m) from the middle on, in columns, and volumes (m,) of the tetrahedra between it and triangles."""
+    places = at_corners(corners - middle, triangles)
+    a, b, c = places
+    return places, along(a, across(b, c)) / 6.0
 
 
 def middle_of(corners: Array) -> Array:
@@ -61,8 +73,8 @@ def moments(corners: Array, triangles: Numbers) -> tuple[float, Array, Array]:
     """Volume, and its first (3,) and second moments (3, 3) about the middle of the corners."""
     (a, b, c), V = tetrahedra(corners, triangles, middle_of(corners))
     s = a + b + c
-    first = 0.25 * (V @ s)
-    second = sum((V[:, None] * x).T @ x for x in (s, a, b, c)) / 20.0
+    first = 0.25 * (s @ V)
+    second = sum((V * x) @ x.T for x in (s, a, b, c)) / 20.0
     return float(V.sum()), first, np.asarray(second)
 
 
@@ -101,3 +113,17 @@ def components(count: int, a: Numbers, b: Numbers) -> Numbers:
             if (further == first).all():
                 break
             first = further
+
+
+def in_order(keys: Numbers) -> Numbers:
+    """The stable order of whole numbers from 0 on: with their places behind them, where both have room in 63 bits."""
+    bits = len(keys).bit_length()
+    if int(keys.max(initial=0)) >> (63 - bits):
+        return np.argsort(keys, kind="stable")
+    return np.asarray(np.sort((keys << bits) | np.arange(len(keys))) & ((1 << bits) - 1))
+
+
+def numbered(first: Numbers) -> tuple[Numbers, Numbers]:
+    """Of things joined as `components` has them the first of each component (k,), and of each thing its component."""
+    begins = first == np.arange(len(first))
+    return np.flatnonzero(begins), (np.cumsum(begins) - 1)[first]

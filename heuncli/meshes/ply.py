@@ -9,7 +9,7 @@ import numpy as np
 
 from heuncli.errors import Finding
 from heuncli.meshes.model import Numbers, Soup
-from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused
+from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused, table
 from heuncli.meshes.polygons import fans, require_faces, triangles_of
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
@@ -128,13 +128,13 @@ class _Words:
     def __init__(self, body: bytes) -> None:
         self.lines, self.at = [line for line in body.splitlines() if line.strip()], 0
 
-    def taken(self, element: Element) -> list[list[bytes]]:
-        """The words of an element, a line a thing."""
+    def taken(self, element: Element) -> list[bytes]:
+        """The lines of an element, one a thing."""
         lines = self.lines[self.at : self.at + element.many]
         if len(lines) < element.many:
             raise broken_off(element)
         self.at += element.many
-        return [line.split() for line in lines]
+        return lines
 
     def pass_over(self, element: Element) -> None:
         """Read on behind an element."""
@@ -142,7 +142,11 @@ class _Words:
 
     def corners(self, element: Element) -> Array:
         """Coordinates (n, 3)."""
-        places, rows = places_of(element), self.taken(element)
+        places, lines = places_of(element), self.taken(element)
+        together = table(lines, np.float64)
+        if together is not None and together.shape[1] >= len(element.properties):
+            return np.ascontiguousarray(together[:, places])
+        rows = [line.split() for line in lines]
         if any(len(row) < len(element.properties) for row in rows):
             raise broken_off(element)
         return np.stack([floats([row[k] for row in rows], "corner") for k in places], axis=-1)
@@ -151,7 +155,13 @@ class _Words:
         """Triangles (m, 3)."""
         if any(p.counted for p in element.properties[: list_of(element)]):
             raise refused("the faces have another list before that of their corners", SAVE_AGAIN)
-        first, rows = list_of(element), self.taken(element)
+        first, lines = list_of(element), self.taken(element)
+        together = table(lines, np.int64)
+        if together is not None and first == 0 and (together[:, 0] == together.shape[1] - 1).all():
+            faces = together[:, 1:].astype(np.intp)
+            require_faces(np.array(faces.shape[1:]))
+            return triangles_of(faces)
+        rows = [line.split() for line in lines]
         try:
             own = [row[first + 1 : first + 1 + int(row[first])] for row in rows]
             if any(len(one) != int(row[first]) for one, row in zip(own, rows, strict=True)):

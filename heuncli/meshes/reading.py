@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 
 from heuncli.errors import Finding
-from heuncli.meshes.closure import loose_corners, neighbours, shells_of
+from heuncli.meshes.closure import edges_of, loose_corners, neighbours, shells_of
 from heuncli.meshes.crossings import require_no_crossing
 from heuncli.meshes.drawn_in import parted
-from heuncli.meshes.model import Soup, TriangleMesh, moments
+from heuncli.meshes.model import Soup, TriangleMesh, middle_of, tetrahedra
 from heuncli.meshes.numbers import refused
 from heuncli.meshes.obj import read_obj
 from heuncli.meshes.ply import read_ply
@@ -31,33 +31,32 @@ def mesh_of(content: bytes | bytearray, name: str) -> TriangleMesh:
     """The closed mesh in a file of this name. Raises Finding: mesh-file, open-mesh and the like."""
     soup = welded(soup_of(bytes(content), name))
     notes: list[str] = []
-    loose = loose_corners(soup.triangles)
+    edges = edges_of(soup.triangles)
+    loose = loose_corners(edges)
     if len(loose):
         before = len(soup.corners)
         soup = welded_near(soup, loose)
-        joined = before - len(np.unique(soup.triangles))
-        if joined and not len(loose_corners(soup.triangles)):
+        edges = edges_of(soup.triangles)
+        if len(soup.corners) < before and not len(loose_corners(edges)):
             notes.append(f"corners less than {resolution(soup.corners):.2g} of its units apart were taken as one")
-    if not len(soup.triangles):
-        raise refused("there are no triangles in it", "a solid's surface, in triangles")
-    beside = neighbours(soup)
-    inward = moments(soup.corners, soup.triangles)[0] < 0.0
-    turned = soup.triangles[:, ::-1] if inward else soup.triangles
+    _require_triangles(soup)
+    beside = neighbours(soup, edges)
+    V = tetrahedra(soup.corners, soup.triangles, middle_of(soup.corners))[1]
+    turned = soup.triangles[:, ::-1] if V.sum() < 0.0 else soup.triangles
     require_no_crossing(*parted(soup.corners, turned, beside), resolution(soup.corners))
-    shells = shells_of(soup, beside)
+    shells = shells_of(soup, beside, V)
     if shells.turned:
         notes.append("its triangles were turned inward; they are taken as outward")
-    used, triangles = np.unique(shells.triangles, return_inverse=True)
-    corners = soup.corners[used]
     return TriangleMesh(
-        corners, triangles.reshape(-1, 3), len(shells.volumes), float(shells.volumes.sum()),
-        corners.min(axis=0), corners.max(axis=0), tuple(notes),
+        soup.corners, shells.triangles, len(shells.volumes), float(shells.volumes.sum()),
+        soup.corners.min(axis=0), soup.corners.max(axis=0), tuple(notes),
     )  # fmt: skip
 
 
 def soup_of(content: bytes, name: str) -> Soup:
     """The triangles of a file, of coordinates that are computed with. Raises Finding."""
     soup = _reader(content, name)(content)
+    _require_triangles(soup)
     if len(soup.triangles) > MOST_TRIANGLES:
         message = f"{len(soup.triangles):,} triangles; at most {MOST_TRIANGLES:,} are read"
         raise Finding("too-large", message, "a coarser mesh will do: mass and inertia err as the square of its size")
@@ -66,6 +65,11 @@ def soup_of(content: bytes, name: str) -> Soup:
     if wrong.any() or not are_in_range(own).all():
         raise refused("a coordinate is no finite number, or beyond what is computed with", "save it again")
     return soup
+
+
+def _require_triangles(soup: Soup) -> None:
+    if not len(soup.triangles):
+        raise refused("there are no triangles in it", "a solid's surface, in triangles")
 
 
 def _reader(content: bytes, name: str) -> Callable[[bytes], Soup]:

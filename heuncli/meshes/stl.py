@@ -9,16 +9,16 @@ read: the order of the corners says what is outside.
 from __future__ import annotations
 
 import re
-import warnings
 
 import numpy as np
 
 from heuncli.errors import Finding
 from heuncli.meshes.model import Soup
-from heuncli.meshes.numbers import SAVE_AGAIN, floats, refused
+from heuncli.meshes.numbers import SAVE_AGAIN, SPACE, at_once, begins_of_words, floats, refused
 from heuncli.results import Array
 
 HEAD, FACET = 84, 50  # bytes
+CASE = 0x20  # makes a letter a small one
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 SOLID = re.compile(rb"^[ \t]*(?:end)?solid\b[^\r\n]*", re.MULTILINE | re.IGNORECASE)
 # the tokens of a facet; None: a number
@@ -26,10 +26,6 @@ FORM = (
     b"facet", b"normal", None, None, None, b"outer", b"loop", *((b"vertex", None, None, None) * 3),
     b"endloop", b"endfacet",
 )  # fmt: skip
-
-NUMBERS = b"0123456789+-.eE \t\r\n"
-LETTERS = b"".join(word for word in FORM if word).translate(None, NUMBERS)  # what of a facet is left without them
-MARKS = ((b"endfacet", b""), (b"endloop", b""), (b"outer loop", b""), (b"facet normal", b"nan"), (b"vertex", b"nan"))
 
 
 def read_stl(content: bytes) -> Soup:
@@ -54,34 +50,32 @@ def _soup(places: Array) -> Soup:
 def _as_text(content: bytes) -> Array:
     """The corners (m, 3, 3) of a file that is text; of several solids all."""
     begin, end = content.find(b"\n"), content.rfind(b"endsolid")
-    places = _of_columns(content[begin:end]) if 0 <= begin < end else None
+    is_last = not content[end:].partition(b"\n")[2].strip()
+    body = content[begin:end] if 0 <= begin < end and is_last else b""
+    if b"endsolid" in body:
+        body = SOLID.sub(b" ", body)
+    places = _at_once(body)
     return _of_words(SOLID.sub(b" ", content).split()) if places is None else places
 
 
-def _of_columns(text: bytes) -> Array | None:
-    """The corners by the numbers of the file all at once; None where it is not written as is usual.
-
-    A mark that is no number stands for each of the words with numbers behind them: so many between the marks they are.
-    """
-    letters = text.translate(None, NUMBERS)
-    count = len(letters) // len(LETTERS)
-    if not count or letters.lower() != LETTERS * count:
+def _at_once(body: bytes) -> Array | None:
+    """The corners by all words at their places, and all numbers in one go; None where it is not written as is usual."""
+    text = np.frombuffer(body, np.uint8).copy()
+    begins = np.flatnonzero(begins_of_words(text))
+    if not len(begins) or len(begins) % len(FORM):
         return None
-    if b"facet" not in text[: text.find(b"vertex")]:
-        return None
-    for word, mark in MARKS:
-        text = text.replace(word, mark)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error", DeprecationWarning)
-        try:
-            numbers = np.fromstring(text, sep=" ")
-        except (DeprecationWarning, ValueError):
+    facets = begins.reshape(-1, len(FORM))
+    for k, word in enumerate(FORM):
+        if word is None:
+            continue
+        at = facets[:, k, None] + np.arange(len(word))
+        if at[-1, -1] >= len(text) or not ((text[at] | CASE) == np.frombuffer(word, np.uint8)).all():
             return None
-    if len(numbers) != 16 * count:
+        text[at] = SPACE
+    numbers = at_once(text.tobytes(), np.float64)
+    if numbers is None or len(numbers) != 12 * len(facets):
         return None
-    rows = numbers.reshape(count, 4, 4)
-    fits = np.isnan(rows[:, :, 0]).all() and np.isfinite(rows[:, 1:, 1:]).all()
-    return np.ascontiguousarray(rows[:, 1:, 1:]) if fits else None
+    return np.ascontiguousarray(numbers.reshape(-1, 4, 3)[:, 1:])
 
 
 def _of_words(words: list[bytes]) -> Array:

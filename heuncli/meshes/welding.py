@@ -19,7 +19,13 @@ MIX = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dty
 def welded(soup: Soup) -> Soup:
     """The triangles with one corner for all of equal coordinates; those that have no area for that are left out."""
     first, number = distinct(soup.corners + 0.0)  # no -0.0
-    return without_points(Soup(soup.corners[first] + 0.0, number[soup.triangles]))
+    return in_use(without_points(Soup(soup.corners[first] + 0.0, number[soup.triangles])))
+
+
+def in_use(soup: Soup) -> Soup:
+    """The same without corners that no triangle has."""
+    used = np.bincount(soup.triangles.ravel(), minlength=len(soup.corners)) > 0
+    return soup if used.all() else Soup(soup.corners[used], (np.cumsum(used) - 1)[soup.triangles])
 
 
 def distinct(rows: Array) -> tuple[Numbers, Numbers]:
@@ -28,10 +34,15 @@ def distinct(rows: Array) -> tuple[Numbers, Numbers]:
     mixed = bits ^ (bits >> np.uint64(29))
     key = (mixed * MIX).sum(axis=1, dtype=np.uint64)
     key = key ^ (key >> np.uint64(32))
-    _, first, number = np.unique(key, return_index=True, return_inverse=True)
+    order = np.argsort(key)
+    ordered = key[order]
+    begins = np.append(True, ordered[1:] != ordered[:-1])
+    first = np.minimum.reduceat(order, np.flatnonzero(begins))
+    number = np.empty(len(rows), dtype=np.intp)
+    number[order] = np.cumsum(begins) - 1
     if not (rows[first[number]] == rows).all():  # two kinds with one key: one row is enough to see it
         _, first, number = np.unique(rows, axis=0, return_index=True, return_inverse=True)
-    return np.asarray(first, dtype=np.intp), np.asarray(number, dtype=np.intp).reshape(-1)
+    return first, np.asarray(number, dtype=np.intp).reshape(-1)
 
 
 def without_points(soup: Soup) -> Soup:
@@ -52,7 +63,7 @@ def welded_near(soup: Soup, loose: Numbers) -> Soup:
     a, b = near_pairs(soup.corners[loose], near)
     to = np.arange(len(soup.corners))
     to[loose] = loose[components(len(loose), a, b)]
-    return without_points(Soup(soup.corners, to[soup.triangles]))
+    return in_use(without_points(Soup(soup.corners, to[soup.triangles])))
 
 
 def near_pairs(points: Array, near: float) -> tuple[Numbers, Numbers]:

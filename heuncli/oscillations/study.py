@@ -19,6 +19,7 @@ from heuncli.linearisation.oscillations import Mode, oscillations
 from heuncli.linearisation.shapes import coordinates
 from heuncli.linearisation.smoothness import without_slope
 from heuncli.linearisation.steady_motion import Looked, fastest, goes_on_as_it_is, look, off_balance
+from heuncli.mechanism.model import RopeLoad, path_of_load
 from heuncli.named_tuples import NamedTuple
 from heuncli.oscillations.rest_digits import as_known
 from heuncli.records import replace
@@ -103,16 +104,17 @@ def set_up_at_rest(spec: Spec) -> Setup:
 
 def require_no_time(setup: Setup) -> None:
     """Raise SolveError for loads that depend on the time."""
-    names = [load.name for load in setup.scene.mechanism.loads if any(value.time_dependent for value in load.values)]
-    names = list(dict.fromkeys(names))
-    hint = f"--without {','.join(names)} leaves out what excites; or give it the value that it has there, by --set"
+    moving = [load for load in setup.scene.mechanism.loads if any(value.time_dependent for value in load.values)]
+    names = list(dict.fromkeys(load.name for load in moving if not isinstance(load, RopeLoad)))
+    left_out = f"--without {','.join(names)} leaves out what excites; or " if names else ""
+    hint = f"{left_out}give it the value that it has there, by --set"
     problems = [
         Problem(
             "no-modes",
-            f"forces.{name} depends on t: small oscillations are those about a state at which nothing changes",
+            f"{name} depends on t: small oscillations are those about a state at which nothing changes",
             hint=hint,
         )
-        for name in names
+        for name in dict.fromkeys(path_of_load(load) for load in moving)
     ]
     if problems:
         raise SolveError(*problems)

@@ -42,6 +42,7 @@ export function readData(text) {
   for (const body of data.scene.bodies) {
     body.places = places(body.places);
     body.attitudes = places(body.attitudes);
+    body.bars = body.bars.map(places);
     body.lines = body.lines.map(places);
     for (const surface of body.surfaces) {
       if (surface.ball) continue;
@@ -49,7 +50,15 @@ export function readData(text) {
       surface.faces = data.scene.topologies[surface.faces];
     }
   }
-  for (const strand of data.scene.strands) strand.line = places(strand.line);
+  const { scene } = data;
+  scene.paths = scene.paths.map(places);
+  for (const belt of scene.belts) [belt.strands, belt.run] = [places(belt.strands), places(belt.run)];
+  for (const pull of scene.pulls) {
+    pull.at = places(pull.at);
+    pull.forces &&= places(pull.forces);
+  }
+  for (const rope of scene.ropes) rope.ends = places(rope.ends);
+  for (const mark of scene.marks) [mark.places, mark.ways] = [places(mark.places), places(mark.ways)];
   data.rows = new Map();
   const blocks = [
     ...data.blocks.map((b) => [b, count]),

@@ -14,6 +14,8 @@ import { View } from "./view.js";
 const AT_ONCE = 400; // cells of the table that are written at every image while the machine plays
 const PAUSE = 0.25; // ms for each cell beyond these until they are written again
 
+const COUPLED = "Of a coupling: what it exerts on the body named beside it, on its line of action.";
+
 /** What stands above and below: the run, what is to be known of it. */
 function tellRun(data) {
   by("run").textContent = `heun ${data.version}${data.file ? `  ·  ${data.file}` : ""}`;
@@ -28,9 +30,12 @@ function signsOf(chosen, data) {
   const parts = [];
   const { choice, section, load } = chosen;
   if (choice) {
-    if (choice.key.startsWith("foundation")) parts.push("Arrows: what the machine exerts on the ground.");
-    else if (choice.frame !== undefined) parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
-    else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.");
+    const ofCouplings = choice.rows.some((row) => row.coupling);
+    if (choice.key.startsWith("couplings")) parts.push(COUPLED);
+    else if (choice.key.startsWith("foundation")) parts.push("Arrows: what the machine exerts on the ground.");
+    else if (choice.frame !== undefined)
+      parts.push("Arrows: the impulses of “from” on “to”, at the blow’s own frame.");
+    else parts.push("Arrows: what “from” exerts on “to”, at the “to” point.", ofCouplings ? COUPLED : "");
   }
   if (section && load) {
     const [unit, size] = data.length;

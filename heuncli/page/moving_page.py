@@ -23,6 +23,7 @@ from heuncli.report.table_plans import SECTIONS
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Results
 from heuncli.scenery.poses import poses_in
+from heuncli.scenery.views import plane_of
 from heuncli.study.ask.study import Study
 
 MOST_MARKS = 400  # events and blows on the time line
@@ -38,7 +39,7 @@ def moving_page(study: Study, units: Units, most: int = MOST) -> str:
 
 def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
     """All that a page knows: plain data, arrays packed."""
-    own, spec = study.results, study.spec
+    own, spec, scene = study.results, study.spec, study.setup.scene
     labels = replace(labels_of(spec), units=units)
     certain = certainty(own, labels, study.magnitudes)
     peaks = peak_times(study, labels, certain)
@@ -56,7 +57,7 @@ def page_data(study: Study, units: Units, most: int = MOST) -> dict[str, Any]:
         "time": packed(frames.times),
         "marks": list(_marks(own, frames)),
         "length": list(units.of("m")),
-        "scene": scene_of(looks_of(spec), spec, results, poses_in(results)),
+        "scene": scene_of(looks_of(spec, scene), spec, results, poses_in(results), plane_of(scene)),
         "blocks": blocks_of(results, labels, certain),
         "blows": list(_blows(own, frames, labels, certain)),
         "sections": sections_of(spec, results, labels, certain),

@@ -6,7 +6,7 @@ import { sidesOf } from "./surfaces.js";
 
 const LIGHT = [-0.37, 0.56, 0.74];
 const BAR = 6; // pixels: how thick a body without shapes is drawn
-const ARM = 2; // pixels: a line from a body's shapes to a point that lies off them
+const ARM = 2; // pixels: lines on a body, and from its shapes to a point that lies off them
 const LIGHT_AS_AIR = 0.3; // how opaque an ellipsoid is that stands for a body's inertia
 const BEFORE = 0.004; // of the scene: how much nearer a bar is taken than its rim
 
@@ -108,9 +108,12 @@ export function paintBodies(painter, scene, poses, view, colours) {
         paintFaces(painter, surface, poses[k], view, own, body.spread ? LIGHT_AS_AIR : 1);
       }
     }
-    for (const line of body.lines) {
-      if (body.surfaces.length === 0) paintBars(painter, line, poses[k], view, own);
-      else paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, ARM));
+    const thin = (line) =>
+      paintPieces(line, poses[k], view, (near, points) => painter.line(near, points, own.edge, ARM));
+    for (const bar of body.bars) {
+      if (body.surfaces.length === 0) paintBars(painter, bar, poses[k], view, own);
+      else thin(bar);
     }
+    body.lines.forEach(thin);
   });
 }

@@ -7,7 +7,8 @@ import { drawPaths } from "./paths.js";
 import { posesAt, stands } from "./poses.js";
 import { paintBodies } from "./solids.js";
 import { words } from "./strokes.js";
-import { drawCorner, drawGroundPoint, drawJoint, drawLine, drawStrand } from "./symbols.js";
+import { drawActing, drawBelt, drawMark, drawRope, nameMark } from "./running.js";
+import { drawCorner, drawGroundPoint, drawJoint, drawLine, drawPath } from "./symbols.js";
 import { drawArrows, drawScale } from "./wrenches.js";
 
 const MANY = 40; // joints
@@ -16,7 +17,7 @@ const MANY = 40; // joints
 function middleOf(body) {
   if (body.middle) return body.middle;
   const solid = body.surfaces.map((surface) => surface.ball?.center ?? surface.corners);
-  const clouds = solid.length ? solid : body.lines;
+  const clouds = solid.length ? solid : body.bars;
   const sum = [0, 0, 0];
   let count = 0;
   for (const cloud of clouds) {
@@ -54,9 +55,14 @@ export function drawMachine(canvas, data, view, shown, colours) {
   const painter = new Painter(pen);
   paintBodies(painter, scene, poses, view, colours);
   painter.paint(shown.look);
-  for (const strand of scene.strands) drawStrand(pen, view, poses, strand, colours);
+  for (const path of scene.paths) drawPath(pen, view, path, colours);
+  for (const belt of scene.belts) drawBelt(pen, view, poses, belt, shown, colours);
+  for (const rope of scene.ropes) drawRope(pen, view, poses, rope, shown, colours);
   for (const line of scene.lines) drawLine(pen, view, poses, line, colours);
+  for (const mark of scene.marks) drawMark(pen, view, scene.symbols[mark.symbol], mark, shown, colours);
+  if (shown.names) for (const mark of scene.marks) nameMark(pen, view, mark, shown, colours);
   const small = scene.joints.length > MANY;
+  for (const own of small ? [] : scene.acting) drawActing(pen, view, poses, scene, own, colours);
   for (const joint of scene.joints) drawJoint(pen, view, poses, joint, colours, small);
   if (shown.load)
     drawLoad(pen, view, poses, { ...shown.load, size: shown.size, tell: shown.values }, shown.frame, colours);

@@ -141,10 +141,9 @@ export function drawJoint(pen, view, poses, joint, colours, small) {
     if (grounded) standing(pen, view, at, colours);
     AT_POINT[joint.kind](pen, at, onScreen(view, axis), colours);
   } else if (joint.kind in SLIDING) {
-    polyline(pen, [from, at], colours.faint, 1, [5, 4]);
     SLIDING[joint.kind](pen, view, at, axis, grounded, colours);
   } else if (joint.kind === "curve") {
-    ring(pen, at[0], at[1], R, colours.paper, colours.ink, 1.8); // its path is drawn as a line
+    ring(pen, at[0], at[1], DOT, colours.paper, colours.ink, 1.4); // its path is drawn as a line
   } else {
     drawRod(pen, joint, from, at, colours);
   }
@@ -193,10 +192,10 @@ export function drawLine(pen, view, poses, line, colours) {
   for (const [x, y] of [a, b]) ring(pen, x, y, 2.5, colours.ink, colours.ink, 1);
 }
 
-/** A strand of a belt, or a path along which a point runs: a line that stands on a body or the ground. */
-export function drawStrand(pen, view, poses, { body, line }, colours) {
+/** A line on the ground: a path along which a point runs, the circle of a ring. */
+export function drawPath(pen, view, path, colours) {
   const ends = [];
-  for (let i = 0; i < line.length; i += 3) ends.push(view.project(stands(poses, body, line.subarray(i, i + 3))));
+  for (let i = 0; i < path.length; i += 3) ends.push(view.project(path.subarray(i, i + 3)));
   polyline(pen, ends, colours.ink, 1.5);
 }
 

@@ -7,6 +7,11 @@ export function plus(a, b) {
   return [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
 }
 
+/** @param {Vector} a @param {Vector} b @returns {Vector} */
+export function minus(a, b) {
+  return [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+}
+
 /** @param {Vector} a @param {number} size @returns {Vector} */
 export function times(a, size) {
   return [a[0] * size, a[1] * size, a[2] * size];

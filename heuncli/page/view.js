@@ -6,6 +6,7 @@ const STEEPEST = Math.PI / 2;
 const NEAREST = 400;
 const ROOM = 0.12; // of the scene: for arrows and loads beside the machine
 const FARTHEST = 0.1;
+const MIDDLE = 0.02; // of the scene's radius: joints that stand no farther off its middle are in it
 
 /** The world axis nearest to a direction. @param {number[]} v @returns {number[]} */
 function nearestAxis(v) {
@@ -13,11 +14,11 @@ function nearestAxis(v) {
   return [0, 1, 2].map((i) => (i === k ? Math.sign(v[k]) || 1 : 0));
 }
 
-/** Whether most joints lie on the far side of the machine, seen against its normal. */
-function behind(scene, normal) {
+/** On which side of the machine most joints stand: 1 that of its normal, -1 the other, 0 neither. */
+function sideOf(scene, normal) {
   const places = [...scene.ground.map((point) => point.at), ...scene.joints.filter((j) => j.a < 0).map((j) => j.p)];
-  const mean = places.reduce((sum, at) => sum + dot(at, normal), 0) / (places.length || 1);
-  return places.length > 0 && mean < dot(scene.center, normal) - 0.02 * scene.radius;
+  const off = places.reduce((sum, at) => sum + dot(at, normal), 0) / (places.length || 1) - dot(scene.center, normal);
+  return places.length > 0 && Math.abs(off) > MIDDLE * scene.radius ? Math.sign(off) : 0;
 }
 
 /** The view: up stays up on the screen; azimuth and elevation [rad] tell from where one looks. */
@@ -34,7 +35,7 @@ export class View {
     [this.first, this.second] = this.up[k] > 0 ? [axis(1), axis(2)] : [axis(2), axis(1)];
     this.normal = normal;
     this.half = scene.half;
-    this.behind = normal !== null && behind(scene, normal);
+    this.side = normal ? sideOf(scene, normal) : 0;
     this.width = 100;
     this.height = 100;
     this.begin();
@@ -44,7 +45,7 @@ export class View {
   begin() {
     if (this.normal && Math.abs(dot(this.normal, this.up)) < 0.5) {
       this.along(this.normal.map(Math.abs));
-      if (this.behind === dot(this.normal, this.toward) > 0) this.turn(Math.PI, 0);
+      if (this.side * dot(this.normal, this.toward) < 0) this.turn(Math.PI, 0);
       this.turn(-0.4, 0.28);
     } else {
       this.azimuth = -1.05;

@@ -23,6 +23,17 @@ export function largestOf(row) {
   return most;
 }
 
+/** The arrow of a coupling's force; its components where no row tells them. */
+function ofCoupling(pull, row) {
+  const vector = pull.forces && [0, 1, 2].map((k) => ({ values: pull.forces.filter((_, i) => i % 3 === k) }));
+  return {
+    row: vector ? { ...row, parts: vector } : row,
+    at: (poses, frame) => pull.at.subarray(3 * frame, 3 * frame + 3),
+    name: `${pull.name} on ${pull.on}`,
+    coupling: pull.name,
+  };
+}
+
 /**
  * What arrows there are to choose from.
  * @param {object} data
@@ -33,6 +44,12 @@ export function arrowChoices(data) {
   const of = (path, name, at) => (rows.has(path) ? [{ row: rows.get(path), at, name }] : []);
   const joint = (j) => (poses) => stands(poses, j.b, j.q);
   const wrench = (begin, what) => scene.joints.flatMap((j) => of(`${begin}joints.${j.name}.${what}`, j.name, joint(j)));
+  const pulls = scene.pulls.filter((pull) => rows.has(pull.row)).map((pull) => ofCoupling(pull, rows.get(pull.row)));
+  const coupled = [...new Set(scene.pulls.map((pull) => pull.name))].map((name) => ({
+    key: `couplings.${name}`,
+    label: `${name}: force`,
+    rows: pulls.filter((pull) => pull.coupling === name),
+  }));
   const single = scene.joints.map((j) => ({
     key: `joints.${j.name}`,
     label: `${j.name}: force and moment`,
@@ -42,9 +59,14 @@ export function arrowChoices(data) {
   const about = data.foundation;
   const onAxis = (poses, frame) => (axis ? vectorAt(axis, frame) : about);
   return [
-    { key: "joints.force", label: "forces of all joints", rows: wrench("", "force") },
+    {
+      key: "joints.force",
+      label: pulls.length ? "forces of all joints and couplings" : "forces of all joints",
+      rows: [...wrench("", "force"), ...pulls],
+    },
     { key: "joints.moment", label: "moments of all joints", rows: wrench("", "moment") },
     ...single,
+    ...coupled,
     {
       key: "foundation",
       label: "foundation: force and moment",

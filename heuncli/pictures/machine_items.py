@@ -12,24 +12,25 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.drawing.figure import Item, Link, PlaceLabel, Polygon, Strokes, Symbol
-from heuncli.joint_kinds import JOINTS, TYPES, Kind
-from heuncli.mechanism.couplings import Coupling
+from heuncli.joint_kinds import TYPES, Kind
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.lettered import letters
 from heuncli.records import record
 from heuncli.results import Array
-from heuncli.scenery.machine import GROUND, BodyLook, JointLook, LineLook, Machine
+from heuncli.scenery.acting import kind_in
+from heuncli.scenery.machine import BodyLook, JointLook, LineLook, Machine
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.silhouettes import SeenSolid, edges_seen, outline, silhouette, solid_of
 from heuncli.scenery.views import SceneView
 from heuncli.spec.models import Bushing, Spec, Spring
+from heuncli.spec.names import GROUND
 
 PENS = (0, 2, 4, 6, 7)  # of bodies, by turns; the others are of what acts
 DRIVEN, APPLIED = 3, 3
 ALONG = 0.35  # of a unit axis that is seen: what shows less of it points at the eye
 MOST_NAMED = 60  # bodies and joints: beyond that a picture of names alone
 MOST_CENTRES = 40  # bodies whose centres of mass are marked
-BAR, ARM, THIN = 3.0, 2.0, 0.7  # pixels: a body that is lines, lines beside shapes, of an instant not the first
+BAR, ARM, RIM, THIN = 3.0, 2.0, 1.3, 0.7  # pixels: a body that is lines, lines beside shapes, on them, later ones
 LEVEL = 1e-6  # of the depth of a picture: what is as far
 DOWN, UP = (0.0, -1.0), (0.0, 1.0)
 STEEP = 0.2  # rise over run: what goes down less steeply from its support does not hang
@@ -45,7 +46,7 @@ HOLDS: Mapping[str, tuple[str, str]] = {"line": ("bore", "guide"), "plane": ("fi
 class Stood:
     """A machine where it stands at some instants, and how it is seen; size: of the unit that is shown in a metre.
 
-    centers: of mass, in body axes. ropes: over sheaves, as they run at the start.
+    centers: of mass, in body axes.
     """
 
     spec: Spec
@@ -54,7 +55,6 @@ class Stood:
     poses: Poses
     view: SceneView
     size: float
-    ropes: tuple[Coupling, ...] = ()
 
     def seen(self, body: str, points: Array, k: int) -> Array:
         """Where a body's points (..., 3) are seen at an instant, (..., 2) in the unit shown."""
@@ -151,11 +151,11 @@ def _pieces(stood: Stood, body: BodyLook, k: int, thin: bool) -> Iterator[SeenPi
             lines = (Strokes(stood.seen(body.name, edges, k), pen, THIN),)
         shape = Polygon(body.name, around, pen, solid=not thin, width=THIN if thin else 1.3)
         yield SeenPiece(float(stood.view.depth(places).mean()), area(around), (shape, *lines))
-    for line in body.lines:
+    for number, line in enumerate(body.strokes):
         if len(line) > 1:
             places = stood.poses.at(body.name, line, k)
             ends = stood.seen(body.name, line, k)
-            width = ARM if stood.solids[body.name] else BAR
+            width = RIM if number >= len(body.bars) else ARM if stood.solids[body.name] else BAR
             strokes = Strokes(np.stack([ends[:-1], ends[1:]], axis=1), pen, THIN if thin else width)
             yield SeenPiece(float(stood.view.depth(places).mean()), 0.0, (strokes,))
 
@@ -197,8 +197,7 @@ def joints(stood: Stood, k: int, *, thin: bool = False) -> list[Item]:
 
 def kind_of(joint: JointLook, spec: Spec) -> Kind:
     """What a joint is, in a scene declared planar, too."""
-    kind = TYPES[joint.kind]
-    return JOINTS[kind.planar] if spec.space == "planar" and kind.planar is not None else kind
+    return kind_in(spec, joint.kind)
 
 
 def turning(kind: Kind) -> str:
@@ -232,7 +231,7 @@ def joint(stood: Stood, look: JointLook, k: int, *, thin: bool = False) -> list[
 
 def _ground(stood: Stood, look: JointLook, kind: Kind, along: tuple[float, float] | None, k: int) -> Iterator[Symbol]:
     """The ground at a joint that stands on it; along: its axis as it is seen, None: towards the eye."""
-    if GROUND not in (look.a, look.b):
+    if GROUND not in (look.a, look.b) or kind.hold.asks == "curve":
         return
     other = look.b if look.a == GROUND else look.a
     place = stood.seen(look.b, look.q, k)
@@ -274,9 +273,8 @@ def line(stood: Stood, look: LineLook, k: int, *, thin: bool = False) -> list[It
 
 def strands(stood: Stood, k: int) -> Iterator[Strokes]:
     """The strands of belts."""
-    for body, lines in stood.machine.strands.items():
-        for places in lines:
-            yield Strokes(stood.seen(body, places, k)[None], APPLIED, ARM)
+    for belt in stood.machine.belts:
+        yield Strokes(stood.seen(belt.carrier, belt.strands, k), APPLIED, ARM)
 
 
 def _bushing(stood: Stood, look: LineLook, k: int, thin: bool) -> list[Item]:
@@ -311,24 +309,24 @@ def _link(stood: Stood, look: LineLook, kind: str, pen: int | None, k: int, thin
 def in_joints(stood: Stood, k: int) -> Iterator[Symbol]:
     """What drives joints, and what acts in them."""
     looks = {look.name: look for look in stood.machine.joints}
-    acting = [(drive.joint, drive.name, "drive", DRIVEN) for drive in stood.spec.drives.values()]
-    for name, force in stood.spec.forces.items():
-        if force.type in ("torque", "turn_spring", "motor"):
-            acting.append((force.joint, name, force.type, APPLIED))
-    for joint_name, name, what, pen in acting:
-        look = looks[joint_name]
-        kind = kind_of(look, stood.spec)
-        if kind.keeps_distance:
-            continue
-        axis = look.axis / np.linalg.norm(look.axis)
+    for own in stood.machine.acting:
+        look = looks[own.joint]
+        axis = way_along(stood, look, k) if kind_of(look, stood.spec).follows_path else look.axis
+        axis = axis / np.linalg.norm(axis)
         seen = stood.seen_along(look.a, axis, k)
-        symbol, along = "coil", (1.0, 0.0)
-        if what != "turn_spring":
-            slides = bool(kind.shifts) and kind.turn.asks == "all"
-            symbol = "turning" if stood.sense(look.a, axis, k) >= 0.0 else "turning back"
-            symbol = "sliding" if slides else symbol
-            along = (float(seen[0]), float(seen[1])) if slides and seen.any() else along
-        yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, pen, f"{name}: {what} in {joint_name}")
+        symbol = own.symbols[int(stood.sense(look.a, axis, k) < 0.0)]
+        along = on_paper(seen) if own.slides and seen.any() else (1.0, 0.0)
+        told = f"{own.name}: {own.what} in {own.joint}"
+        yield Symbol(*on_paper(stood.seen(look.b, look.q, k)), symbol, along, APPLIED, told)
+
+
+def way_along(stood: Stood, look: JointLook, k: int) -> Array:
+    """Which way a path goes on where its point is, axes of its body; where it crosses itself one of both."""
+    joint = stood.spec.joints[look.name]
+    assert joint.path is not None
+    D = stood.poses.at(look.b, look.q, k) - stood.poses.at(look.a, look.p, k)
+    D = D if look.a == GROUND else D @ stood.poses.attitudes[look.a][k]
+    return np.asarray(joint.path.at(float(joint.path.nearest(D)))[1])
 
 
 def marks(stood: Stood, k: int) -> Iterator[Symbol]:

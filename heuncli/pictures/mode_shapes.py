@@ -20,8 +20,9 @@ from heuncli.oscillations.moved_bodies import MovedBodies
 from heuncli.pictures.refusals import NotDrawable
 from heuncli.report.mode_words import about, figures_of, notes
 from heuncli.results import Array
-from heuncli.scenery.machine import GROUND, Machine
+from heuncli.scenery.machine import Machine
 from heuncli.scenery.views import SceneView
+from heuncli.spec.names import GROUND
 
 HEIGHT = 230.0  # pixels
 MOST = 12  # modes that are drawn
@@ -79,7 +80,7 @@ def _lines(found: MovedBodies, machine: Machine) -> Iterator[MovingLine]:
     places = {name: k for k, name in enumerate(found.names)}
     for body in machine.bodies:
         k = places[body.name]
-        own = [edge for surface in body.surfaces for edge in surface.edges] or list(body.lines)
+        own = [edge for surface in body.surfaces for edge in surface.edges] or list(body.strokes)
         if sum(map(len, own)) < 2:
             own = _cross(found.scene.mechanism.bodies[k])
         for line in own:

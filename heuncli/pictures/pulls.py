@@ -18,11 +18,14 @@ from heuncli.pictures.machine_items import on_paper
 from heuncli.report.table_units import Units
 from heuncli.results import Array, Block
 from heuncli.results_schema import AT_A_BLOW
+from heuncli.scenery.coupled_pulls import coupled_pulls
+from heuncli.scenery.machine import Machine
+from heuncli.scenery.poses import Poses
 from heuncli.scenery.views import SceneView
 from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
 
-JOINTS_PEN, APPLIED_PEN = 1, 3
+JOINTS_PEN, APPLIED_PEN, COUPLED_PEN = 1, 3, 5
 LOADS = frozenset({"joints"})
 LONGEST = 0.2  # of the picture's larger side: the arrow of the largest
 HIGHEST = 0.08  # of it: a distributed load where it is densest
@@ -32,7 +35,11 @@ FACING = 0.95  # of a moment that must be about the line of sight to be drawn
 MOST_VALUES = 16  # arrows whose values are written beside them
 TEETH = 9  # arrows of a distributed load
 DIGITS = 3  # of these values
-KINDS = ((JOINTS_PEN, "of joints, from ON to"), (APPLIED_PEN, "applied"))
+KINDS = (
+    (JOINTS_PEN, "of joints, from ON to"),
+    (COUPLED_PEN, "of couplings"),
+    (APPLIED_PEN, "applied"),
+)
 
 
 class Pull(NamedTuple):
@@ -79,15 +86,20 @@ class Pulls(NamedTuple):
 NOTHING = Pulls((), (), ())
 
 
-def pulls_of(study: Study, t: float) -> Pulls:
-    """What acts at an instant of the run; in a blow what strikes, and what joints answer."""
+def pulls_of(study: Study, machine: Machine, poses: Poses) -> Pulls:
+    """What acts at the first instant of some poses; in a blow what strikes, and what joints and couplings answer."""
     if study.spec.analysis.type == "impulse" and study.results.impulses:
-        found = [*_joints(study.results.impulses[0]["joints"], ()), *_blows(study)]
+        struck = study.results.impulses[0]
+        found = [
+            *_joints(struck["joints"], ()),
+            *_couplings(machine, poses, struck.get("couplings", {})),
+            *_blows(study),
+        ]
         return _pulls(found, [], {False: 0.0, True: 0.0})._replace(struck=True)
-    alone = study.of_one_instant
-    recovery = study.recovery if alone else study.recovery_at(np.array([t]), LOADS)
-    joints = study.results.joints if alone else study.reports_at(np.array([t]), LOADS).joints
-    found, spreads = list(_joints(joints, (0,))), []
+    alone, times = study.of_one_instant, poses.times[:1]
+    recovery = study.recovery if alone else study.recovery_at(times, LOADS)
+    told = study.results if alone else study.reports_at(times, LOADS)
+    found, spreads = [*_joints(told.joints, (0,)), *_couplings(machine, poses, told.couplings)], []
     for own in recovery.loads:
         if isinstance(own.load, PointLoad) and own.action.spread:
             spreads.append(_spread(own, recovery.states))
@@ -118,6 +130,13 @@ def _joints(block: Block, at: tuple[int, ...]) -> Iterator[Pull]:
         place = np.asarray(own["point"])[at]
         yield Pull(name, place, np.asarray(own["force"])[at], JOINTS_PEN)
         yield Pull(name, place, np.asarray(own["moment"])[at], JOINTS_PEN, turns=True)
+
+
+def _couplings(machine: Machine, poses: Poses, blocks: Block) -> Iterator[Pull]:
+    """The forces of couplings in a block of results at the first instant of some poses."""
+    first = poses.first
+    for pull in coupled_pulls(machine, first, blocks):
+        yield Pull(pull.name, pull.places[0], pull.forces[0], COUPLED_PEN)
 
 
 def _blows(study: Study) -> Iterator[Pull]:
@@ -183,8 +202,8 @@ def _force(pull: Pull, view: SceneView, size: float, scale: float, least: float)
 
 
 def _value(pull: Pull, place: Array, unit: str, of_it: float) -> PlaceLabel:
-    """Its magnitude, and the name of what is applied."""
-    applied = pull.pen == APPLIED_PEN
+    """Its magnitude, and the name of what is applied, or of a coupling, which nothing else names."""
+    applied = pull.pen != JOINTS_PEN
     text = f"{pull.name} " * applied + f"{short(of_it * pull.size, DIGITS)} {unit}"
     return PlaceLabel(*on_paper(place), text, pull.name if applied else "", pull.pen, spare=not applied)
 

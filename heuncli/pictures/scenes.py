@@ -55,7 +55,7 @@ def scene(
     poses = poses_of(study, times)
     stood = standing(study.setup.scene, study.spec, poses, view, units)
     ways = traces.traced(source, traced) if traced else traces.reported(source)
-    return figure(stood, units, ways, pulls_of(study, float(times[0])), source.name)
+    return figure(stood, units, ways, pulls_of(study, stood.machine, poses), source.name)
 
 
 def as_assembled(spec: Spec, view: str | None = None) -> Figure:
@@ -71,12 +71,11 @@ def as_assembled(spec: Spec, view: str | None = None) -> Figure:
 
 def standing(scene: PreparedScene, spec: Spec, poses: Poses, view: str | None, units: Units) -> Stood:
     """A machine in some poses as it is seen. Raises Finding."""
-    machine, centers = machine_of(spec, faces(spec)), centers_of(scene.mechanism)
+    machine, centers = machine_of(spec, faces(spec), scene), centers_of(scene.mechanism)
     seen = view_of(view, scene.mechanism.gravity) if view is not None else None
     if seen is None:
         seen = usual(scene, _extent(machine, centers, poses))
-    ropes = tuple(own for own in scene.mechanism.couplings if own.given.type == "rope")
-    return Stood(spec, machine, centers, poses, seen, units.of("m")[1], ropes)
+    return Stood(spec, machine, centers, poses, seen, units.of("m")[1])
 
 
 def faces(spec: Spec) -> int:
@@ -93,7 +92,7 @@ def _extent(machine: Machine, centers: Mapping[str, Array], poses: Poses) -> Arr
     """Points (n, 3) that a machine reaches to at the first instant."""
     points = [poses.at(body.name, np.array(p), 0) for body in machine.bodies for p in (centers[body.name],)]
     for body in machine.bodies:
-        own = [surface.corners for surface in body.surfaces if not body.spread] + list(body.lines)
+        own = [surface.corners for surface in body.surfaces if not body.spread] + list(body.strokes)
         points += [place for part in own for place in poses.at(body.name, part, 0)]
     points += [place for path in machine.paths for place in path]
     points += [poses.at(j.b, j.q, 0) for j in machine.joints] + [poses.at(j.a, j.p, 0) for j in machine.joints]
@@ -105,11 +104,16 @@ def figure(stood: Stood, units: Units, ways: Sequence[Traced], pulls: Pulls, nam
     first = _first(stood)
     later = [item for k in range(len(stood.poses.times) - 1, 0, -1) for item in _later(stood, k)]
     strands = [line.ends.reshape(-1, 2) for line in rope_items.ropes(stood, 0)]
-    within = window_of(stood, [*(traces.seen(stood, one) for one in ways), *strands])
+    within = window_of(stood, [*(traces.seen(stood, one) for one in ways), *strands, *rope_items.reach(stood)])
     arrows = drawn(pulls, stood.view, stood.size, within.side, units)
     window = within.with_arrows([item for item in arrows.items if isinstance(item, Arrow)])
     items = [*clipped(later, window), *traces.curves(stood, ways), *clipped(first, window), *arrows.items]
-    items += [*machine_items.names(stood, 0), *_instants(stood), *traces.names(stood, ways)]
+    items += [
+        *machine_items.names(stood, 0),
+        *rope_items.names(stood, 0),
+        *_instants(stood),
+        *traces.names(stood, ways),
+    ]
     strip = STRIP * window.side
     items += _corner(stood, window, strip)
     step = 0.035 * window.side
@@ -130,7 +134,7 @@ def _first(stood: Stood) -> list[Item]:
     items += rope_items.ropes(stood, 0)
     items += machine_items.strands(stood, 0)
     items += machine_items.in_joints(stood, 0)
-    return items + machine_items.joints(stood, 0)
+    return [*items, *machine_items.joints(stood, 0), *rope_items.marks(stood, 0)]
 
 
 def _later(stood: Stood, k: int) -> list[Item]:

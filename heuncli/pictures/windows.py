@@ -13,7 +13,7 @@ from heuncli.drawing.figure import Arrow, Item, Polygon, Strokes
 from heuncli.named_tuples import NamedTuple
 from heuncli.pictures.machine_items import Stood
 from heuncli.results import Array
-from heuncli.scenery.machine import GROUND
+from heuncli.spec.names import GROUND
 
 FAR = 12.0  # times as far as all joints and centres reach: what is drawn in part
 ROUNDING = 1e-9  # of what is seen: joints and centres that are no farther apart stand in one place
@@ -73,7 +73,7 @@ def _reaches(stood: Stood, ways: Sequence[Array]) -> tuple[Array, Array, dict[st
         ends += [(own.a, own.p) for own in machine.lines] + [(own.b, own.q) for own in machine.lines]
         core += [stood.seen(body, point, k) for body, point in ends]
         for body in machine.bodies:
-            for part in (*(solid.surface.corners for solid in stood.solids[body.name]), *body.lines):
+            for part in (*(solid.surface.corners for solid in stood.solids[body.name]), *body.strokes):
                 far[body.name] += list(stood.seen(body.name, part, k))
     for path in machine.paths:
         core += list(stood.seen(GROUND, path, 0))

@@ -20,7 +20,7 @@ def any_alike(scene: PreparedScene) -> bool:
 # in their order: the module under this one whose `step` it is, and whether it may concern a scene at all
 STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
     ("welded_bodies", lambda scene: any(JOINTS[joint.kind].is_rigid for joint in scene.mechanism.joints)),
-    ("immobile_bodies", lambda scene: bool(scene.layout.rows)),
+    ("immobile_bodies", lambda scene: any(k < len(scene.mechanism.joints) for k in scene.layout.rows)),
     ("spins", lambda scene: bool(scene.layout.bodies["ball"].any())),
     ("plane.step", lambda scene: bool(scene.mechanism.bodies) and not any_alike(scene)),
 )
@@ -28,13 +28,12 @@ STEPS: tuple[tuple[str, Callable[[PreparedScene], bool]], ...] = (
 
 def whole(mechanism: Mechanism) -> list[str]:
     """Why a scene is moved as it is given, in sentences; none where it may be made smaller."""
-    paths = any(joint.path is not None for joint in mechanism.joints)
-    reasons = (
-        (mechanism.rubbing, "friction hangs on what joints carry, and in a smaller scene they carry less"),
-        (mechanism.couplings, "couplings look at bodies and coordinates that a smaller scene might be without"),
-        (paths, "a path is fixed in its body as that is given"),
-    )
-    return [f"the scene is moved as it is given: {why}" for met, why in reasons if met]
+    why = []
+    if mechanism.rubbing:
+        why.append("friction hangs on what joints carry, and in a smaller scene they carry less")
+    if any(own.stretched is not None for own in mechanism.couplings):
+        why.append("ropes that stretch pull at bodies that a smaller scene might be without")
+    return [f"the scene is moved as it is given: {reason}" for reason in why]
 
 
 def reduce(scene: PreparedScene, stages: Stages = ANEW) -> Reduced:

@@ -104,10 +104,10 @@ def immobile(search: ImmobilitySearch) -> tuple[Mask, tuple[str, ...]]:
 
 
 def movable(layout: Layout) -> Mask:
-    """The bodies whose coordinates no closure can hold, as they are in none, or which are driven, limited or named."""
+    """The bodies whose coordinates no closure can hold: they are in none, or driven, limited, coupled or named."""
     mechanism = layout.mechanism
     closed = {n for island in layout.islands for n in island.freedoms.tolist()}
-    limited = {stop.joint for stop in mechanism.stops}
+    limited = {stop.joint for stop in mechanism.stops} | {k for own in mechanism.couplings for k in own.joints}
     named = {name for value in mechanism.expressions() for name, _ in value.uses}
     found = np.zeros(len(layout.bodies), dtype=bool)
     for i, h in enumerate(layout.spanning.hangs):
@@ -147,6 +147,12 @@ def ends_of_limits(layout: Layout, held: Mask, kept: dict[int, str]) -> list[int
             name = mechanism.bodies[layout.spanning.hangs[max(ends)].body].name
             kept[max(ends)] = f"bodies.{name} cannot move, but stays: joints.{joint.name} may go slack, or is limited"
             return [max(ends)]
+    for owner, own in enumerate(mechanism.couplings, len(mechanism.joints)):
+        places = [layout.place[i] for i in own.bodies]
+        if held[places].all():
+            name = mechanism.bodies[layout.spanning.hangs[max(places)].body].name
+            kept[max(places)] = f"bodies.{name} cannot move, but stays: {mechanism.owner(owner)} holds it as well"
+            return [max(places)]
     return []
 
 
@@ -180,7 +186,12 @@ def within(layout: Layout, island: Island, i: int) -> list[int]:
 
 
 def lasting(layout: Layout, r: int, held: Mask) -> bool:
-    """Whether a closure row is between bodies that are left and the ground, and holds them so at all times."""
+    """Whether a closure row is between bodies that are left and the ground, and holds them so at all times.
+
+    Those of couplings are not asked: what they hold hangs on coordinates, or rolls.
+    """
+    if layout.rows[r] >= len(layout.mechanism.joints):
+        return False
     row = layout.tables["closures"][r]
     one_sided = r in set(layout.tables["contacts"]["row"].tolist())
     ends = [int(row[end]) for end in ("a", "b") if row[end] >= 0]

@@ -14,18 +14,19 @@ import numpy as np
 
 from heuncli.expressions.programs import Expression
 from heuncli.kernel.choose import scene as kernel
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Blow,
     Body,
     BushingLoad,
     Joint,
+    JointLoad,
     Load,
     Mechanism,
     NamedPoint,
     PairLoad,
     PointLoad,
-    ThreadLoad,
 )
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -74,6 +75,10 @@ class Parts:
         """Whether both ends of a joint are points of one body."""
         return self.at(joint.a).body == self.at(joint.b).body
 
+    def holds_all(self, own: Coupling) -> bool:
+        """Whether all that a coupling looks at is of one body."""
+        return len({self.at(i).body for i in own.ends}) == 1
+
 
 def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> PreparedScene:
     """The scene of those bodies that are roots, in the state in which the larger one starts (but for y0)."""
@@ -89,6 +94,7 @@ def restated(scene: PreparedScene, parts: Parts, bodies: Sequence[Body]) -> Prep
         blows=tuple(blow_of(blow, parts, number) for blow in mechanism.blows),
         stops=tuple(replace(stop, joint=joint_number[stop.joint]) for stop in mechanism.stops),
         points={name: point_of(point, parts, number) for name, point in mechanism.points.items()},
+        couplings=couplings_of(layout, parts, number, joint_number) if mechanism.couplings else (),
     )
     idle = tuple(replace(spin, body=number[spin.body]) for spin in scene.idle if spin.body in number)
     inertias = np.array([body.inertia for body in bodies]).reshape(-1, 3, 3)
@@ -133,6 +139,7 @@ def joint_of(layout: Layout, parts: Parts, number: dict[int, int], k: int) -> Jo
     return replace(
         joint, a=number[a.body], p=a.point(joint.p), axis=a.R @ joint.axis,
         b=number[b.body], q=b.point(joint.q), to_axis=b.R @ joint.to_axis, length=length,
+        path=None if joint.path is None else joint.path.turned(a.R),
     )  # fmt: skip
 
 
@@ -152,12 +159,27 @@ def load_of(load: Load, parts: Parts, number: dict[int, int], joint_number: dict
             load, a=number[a.body], p=a.point(load.p), frame=a.R @ load.frame,
             b=number[b.body], q=b.point(load.q), to_frame=b.R @ load.to_frame,
         )  # fmt: skip
-    assert not isinstance(load, ThreadLoad)  # scenes with such friction are moved as they are given (compose.py)
+    assert isinstance(load, JointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
     if load.joint in joint_number:
         return replace(load, joint=joint_number[load.joint])
     nothing = Expression.of(0.0)
     value = load.value if load.kind == "torque" and load.value is not None else nothing
     return PointLoad(load.name, "couple", GROUND, None, (value, nothing, nothing), False)
+
+
+def couplings_of(
+    layout: Layout, parts: Parts, number: dict[int, int], joint_number: dict[int, int]
+) -> tuple[Coupling, ...]:
+    """The couplings between what their bodies are part of; no joint whose coordinate they count is inside a body."""
+    from heuncli.reduction.restated_couplings import SeenFrom, couplings_seen  # few scenes have them
+
+    seen = SeenFrom(
+        body=lambda i: number[parts.at(i).body],
+        joint=lambda k: joint_number[k],
+        point=lambda i, p: parts.at(i).point(np.asarray(p)),
+        direction=lambda i, e: np.asarray(parts.at(i).R @ np.asarray(e)),
+    )
+    return couplings_seen(layout, lambda own: seen)
 
 
 def turned(part: PlaceInBody, load: PointLoad) -> tuple[Expression, Expression, Expression]:

@@ -18,7 +18,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import Body, BushingLoad, Mechanism, PairLoad, PointLoad, ThreadLoad
+from heuncli.mechanism.model import Body, BushingLoad, Mechanism, PairLoad, PointLoad, RopeLoad, ThreadLoad
 from heuncli.records import record, replace
 from heuncli.reduction.model import Reduction
 from heuncli.reduction.slots import rotated
@@ -193,12 +193,11 @@ def free_to_turn(mechanism: Mechanism) -> dict[int, list[Array]]:
         elif isinstance(load, PairLoad):
             acts(load.a, load.p)
             acts(load.b, load.q)
-        elif isinstance(load, BushingLoad):
+        elif isinstance(load, BushingLoad | ThreadLoad):
             acts(load.a, None)
             acts(load.b, None)
-        elif isinstance(load, ThreadLoad):
-            acts(load.a, None)
-            acts(load.b, None)
+        elif isinstance(load, RopeLoad):
+            continue  # its coupling stands below
         elif "turning" in JOINTS[mechanism.joints[load.joint].kind].motions:
             acts(mechanism.joints[load.joint].a, None)
             acts(mechanism.joints[load.joint].b, None)

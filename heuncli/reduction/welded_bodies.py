@@ -81,10 +81,17 @@ def not_inside(layout: Layout, parts: Parts) -> tuple[int, str] | None:
     """A body that may not become part of the one it would, and why: then something would be lost that ends the run."""
     mechanism = layout.mechanism
     limited = {stop.joint for stop in mechanism.stops}
+    counted = {k for coupling in mechanism.couplings for k in coupling.joints}
     for k, joint in enumerate(mechanism.joints):
-        if parts.inside(joint) and (joint.tension_only or joint.drive is not None or k in limited):
+        ends_run = joint.tension_only or joint.drive is not None or k in limited or k in counted
+        if parts.inside(joint) and ends_run:
             body = max(joint.a, joint.b, key=lambda i: layout.place.get(i, -1))
-            what = f"joints.{joint.name} between it and what it is welded to is driven, limited or a rope"
+            what = f"joints.{joint.name} between it and what it is welded to is driven, limited, coupled or a rope"
+            return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
+    for owner, own in enumerate(mechanism.couplings, len(mechanism.joints)):
+        if parts.holds_all(own):
+            body = max(own.bodies, key=lambda i: layout.place[i])
+            what = f"{mechanism.owner(owner)} is between it and what it is welded to"
             return body, f"bodies.{mechanism.bodies[body].name} stays a body by itself: {what}"
     return None
 

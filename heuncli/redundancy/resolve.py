@@ -194,7 +194,7 @@ def sums_of(
         found = self_stress(runner, near, there)
         beside = of_constraints(found, joints, there) if found is not None else None
     reached = [np.concatenate(wrench_open(stress, share), axis=1).any(axis=0) for share in stress.shares]
-    of, component = np.nonzero(reached)  # joint, component: of each that is open
+    of, component = np.nonzero(np.reshape(reached, (-1, 6)))  # joint, component: of each that is open
     at_instants = relative_shares(stress, of, component)
     in_poses = at_instants[:, pick]
     if beside is not None:
@@ -227,7 +227,7 @@ def relative_multipliers(stress: SelfStress, r: int) -> Array:
 def of_constraints(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates) -> SelfStress:
     """The self-stresses with their shares in the joints' constraints alone, without those in drives and stops."""
     shares = [load.parts(states, whole)[0] for load, whole in zip(joints, stress.shares, strict=True)]
-    alone: SelfStress = replace(stress, shares=np.array(shares))
+    alone: SelfStress = replace(stress, shares=np.reshape(shares, stress.shares.shape))
     return alone
 
 

@@ -37,7 +37,7 @@ def require_certain_start(scene: PreparedScene, runner: Runner, t: float) -> Non
 
 
 def open_in(layout: Layout, load: JointLoad | ThreadLoad, stress: SelfStress, states: BodyStates) -> Mask:
-    """Whether what presses is open, (n_t,): of a joint its force, and of two ends what tilts it; of a thread its own."""
+    """Whether what presses is open, (n_t,): of a joint its force, of two ends what tilts it, of a thread its own."""
     mechanism = layout.mechanism
     if isinstance(load, ThreadLoad):
         row = layout.rows.index(len(mechanism.joints) + load.coupling)

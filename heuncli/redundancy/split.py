@@ -88,7 +88,7 @@ def split(joints: list[JointLoads], states: BodyStates, stress: SelfStress, leas
         choices.append(choice)
         words.append("chosen by stiffness")
     left = together(left, among)
-    if least_norm and left is not None:
+    if least_norm and left is not None and joints:  # between wheels and couplings alone nothing is weighed
         maps = [np.broadcast_to(np.diag([1.0] * 3 + [1.0 / stress.length] * 3), (len(states.x), 6, 6)) for _ in joints]
         choice, left = with_least_strain(left, maps)
         choices.append(choice)

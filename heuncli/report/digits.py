@@ -175,7 +175,8 @@ def with_axis(certain: Certainty, results: Results, of: Magnitudes, units: Units
     relative = certain.error("foundation", unit) / float(force.min()) if force.size else 0.0
     lever = of.size + largest(axis["point"]) + largest(axis["pitch"])
     shown, size = units.of("m")
-    own = {("axis", "1"): relative, ("axis", shown): relative * lever * size}
+    bounds = {("axis", "1"): relative, ("axis", shown): relative * lever * size}
+    own = {key: max(bound, certain.errors.get(key, 0.0)) for key, bound in bounds.items()}
     return certain._replace(errors={**certain.errors, **own})
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from heuncli.errors import Problem
 from heuncli.kinetostatics.bodies import body_states
+from heuncli.mechanism.model import ThreadLoad, path_of_load
 from heuncli.rest.coordinates import Coordinates
 from heuncli.rest.pose import Pose
 from heuncli.results import Array
@@ -35,7 +36,9 @@ def run_away(coordinates: Coordinates, passed: Array, far: Array) -> Problem:
             sentences[f"{name} slides on and on"] = None
     told = list(sentences)
     more = f" and {len(told) - MOST_NAMES} more" if len(told) > MOST_NAMES else ""
-    return no_rest(f"{', '.join(told[:MOST_NAMES])}{more}: nothing holds it", HOLDS)
+    rubs = any(isinstance(load, ThreadLoad) for load in coordinates.layout.mechanism.loads)
+    hint = f"{HOLDS}; a self-locking thread creeps, and holds nothing at rest" if rubs else HOLDS
+    return no_rest(f"{', '.join(told[:MOST_NAMES])}{more}: nothing holds it", hint)
 
 
 def free_shifts(coordinates: Coordinates, number: int) -> Array:
@@ -85,7 +88,7 @@ def no_value(coordinates: Coordinates, change: Array) -> Problem:
     """The problem of loads without a value, or a slope, where the search has come; change (k, f): beside the pose."""
     what = "value" if not np.isfinite(change).all() else "slope"
     layout = coordinates.layout
-    loads = [f"forces.{load.name}" for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
+    loads = [path_of_load(load) for load in layout.mechanism.loads if any(e.constant is None for e in load.values)]
     which = f" ({', '.join(loads[:MOST_NAMES])})" if loads else ""
     message = f"the search came to where a load{which} has no {what}: a root, a logarithm, points that coincide"
     return no_rest(message, "start nearer to the pose, or give the load a value on both sides")

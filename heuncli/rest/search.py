@@ -21,6 +21,7 @@ from heuncli.kinetostatics.coordinates import coordinates as joint_coordinates
 from heuncli.linearisation.indifference import indifference
 from heuncli.records import record, replace
 from heuncli.rest.coordinates import Coordinates, coordinates_of
+from heuncli.rest.geared import tied
 from heuncli.rest.pose import Pose, bearing, carried, dependent, opening, pose_at
 from heuncli.rest.reasons import endless, jumps, run_away, singular
 from heuncli.rest.slopes import SAMPLES, Slopes, decided_by, slopes
@@ -71,6 +72,7 @@ class RestSearch:
         """off: of a step, what the linear law may leave out; start (n_state,): in place of the layout's."""
         self.scene, self.evaluator, self.t, self.off = scene, evaluator, t, off
         self.coordinates = coordinates_of(evaluator.layout)
+        self.tied = tied(evaluator.layout, self.coordinates.freedoms, self.coordinates.numbers)
         self.start = evaluator.layout.y0 if start is None else start
         self.astray = np.zeros(self.coordinates.count)
         self.turn = Slowest(self.start, self.astray, np.inf)
@@ -114,8 +116,9 @@ class RestSearch:
         self.most = max(self.most, float(own.summed.max(initial=0.0)) / tolerances.SUM_ROUNDING)
         far = np.abs(self.passed) * self.coordinates.weights
         limit = np.where(self.coordinates.shifts, tolerances.RUN_AWAY, tolerances.TURNS_ON)
-        if (far > limit).any():
-            raise SolveError(run_away(self.coordinates, self.passed, far / limit))
+        beyond = self.tied.least(far / limit)
+        if (beyond > 1.0).any():
+            raise SolveError(run_away(self.coordinates, self.passed, beyond))
         if self.steps >= MOST_STEPS * np.sqrt(tolerances.REST_BENT / self.off):
             raise SolveError(self.lost_rank(at) or endless(self.coordinates, at, self.steps))
 
@@ -268,7 +271,9 @@ class RestSearch:
         recovered = replace(new.recovered, states=state[None, :])
         told = joint_coordinates(layout, recovered, body_states(layout, recovered))
         for joint, place in layout.counters.items():
-            state[place] = told[layout.mechanism.joints[joint].name]["angle"][0]
+            state[place] = told[(own := layout.mechanism.joints[joint]).name][
+                "angle" if own.path is None else "travel"
+            ][0]
         return replace(new, state=state, recovered=replace(recovered, states=state[None, :]))
 
     def polished(self, at: Pose, own: Slopes) -> tuple[Pose, Slopes]:

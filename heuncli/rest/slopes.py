@@ -171,7 +171,16 @@ def of_springs(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Arra
     layout, bodies = evaluator.layout, at.recovered.bodies[0]
     rows = layout.tables["loads"]
     own = [k for k in np.flatnonzero(rows["kind"] == kernel.SPRING).tolist() if at.recovered.loads["span"][0, k] > 0.0]
-    units = np.zeros((len(own), len(bodies), 6))
+    ropes = np.flatnonzero(rows["kind"] == kernel.ROPE).tolist()
+    units = np.zeros((len(own) + len(ropes), len(bodies), 6))
+    for n, k in enumerate(ropes, len(own)):
+        size = tolerances.SUM_ROUNDING * rows["stiffness"][k] * (at.recovered.loads["span"][0, k] + rows["length"][k])
+        for part in range(int(rows["part"][k]), int(rows["part"][k] + rows["part_count"][k])):
+            ends, answer = layout.tables["parts"][part], at.recovered.parts[0, part]
+            for body, sign in ((int(ends["b"]), size), (int(ends["a"]), -size)):
+                if body >= 0:
+                    units[n, body, :3] += sign * (answer["m"] + np.cross(answer["Q"] - bodies["r"][body], answer["f"]))
+                    units[n, body, 3:] += sign * answer["f"]
     for n, k in enumerate(own):
         load = at.recovered.loads[0, k]
         line = (load["at"] - load["from_at"]) / load["span"]
@@ -180,7 +189,7 @@ def of_springs(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> Arra
             if body >= 0:
                 units[n, body, :3] += sign * np.cross(place - bodies["r"][body], force)
                 units[n, body, 3:] += sign * force
-    if not own:
+    if not len(units):
         return np.zeros((coordinates.count, 0))
-    answers = columns(evaluator.workspace, at.t, at.state, units, np.zeros(len(own)))
+    answers = columns(evaluator.workspace, at.t, at.state, units, np.zeros(len(units)))
     return coordinates.along(answers.bodies["alpha"], answers.freedoms["udot"]).T

@@ -12,7 +12,7 @@ from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import Mechanism, path_of_load
 from heuncli.rest.coordinates import Coordinates, at_rest, driven_turns, resting
 from heuncli.rest.pose import Pose
 from heuncli.rest.reasons import no_rest
@@ -29,7 +29,7 @@ LATER = (0.37, 1.13, 2.71)  # how far drives have gone on when it is looked at a
 def require_constant(mechanism: Mechanism) -> None:
     """Raise SolveError [no-rest-pose] where loads depend on the time, or the rates of drives do."""
     problems = [
-        no_rest(f"forces.{load.name} depends on t", "give its value at rest, or run a motion with dampers")
+        no_rest(f"{path_of_load(load)} depends on t", "give its value at rest, or run a motion with dampers")
         for load in mechanism.loads
         if any(value.time_dependent for value in load.values)
     ]

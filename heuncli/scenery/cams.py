@@ -14,6 +14,8 @@ from heuncli.mechanism.build_couplings import cam_rows
 from heuncli.mechanism.cam_profiles import Flank, flank
 from heuncli.mechanism.couplings import CouplingPart
 from heuncli.results import Array
+from heuncli.scenery.discs import Disc
+from heuncli.scenery.threads import pose
 from heuncli.shapes.rotations import perpendicular
 from heuncli.spec.couplings import Cam
 from heuncli.spec.models import Spec
@@ -57,6 +59,14 @@ def outline(own: Flank, part: CouplingPart, axis: Array) -> Array:
         return np.concatenate([own.around(axis, line), own.places[:1]])
     hub = axis * (own.places[0] @ axis)
     return np.array([hub, *line, own.places[-1], hub])
+
+
+def rollers_of(spec: Spec) -> Iterator[tuple[str, Disc]]:
+    """The rollers that run beside paths, each with its body, in a scene as it is drawn."""
+    for own in spec.joints.values():
+        if own.path is not None and own.path.radius:
+            n = pose(spec, own.b)[0].T @ pose(spec, own.a)[0] @ np.asarray(own.path.normal)
+            yield own.b, Disc(np.array(own.q), n, own.path.radius)
 
 
 def paths_of(spec: Spec, body: str) -> Iterator[Array]:

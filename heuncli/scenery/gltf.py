@@ -18,10 +18,11 @@ import numpy as np
 
 from heuncli.drawing.pens import pen
 from heuncli.results import Array
-from heuncli.scenery.machine import GROUND, BodyLook, Machine
+from heuncli.scenery.machine import BodyLook, Machine
 from heuncli.scenery.poses import Poses
 from heuncli.scenery.solids import Surface
 from heuncli.shapes.rotations import to_quaternion, turn_onto
+from heuncli.spec.names import GROUND
 
 FLOAT, WHOLE = 5126, 5125  # glTF's numbers of types: float32, uint32
 POINTS, LINES, TRIANGLES = 0, 1, 4  # and of what corners are joined to
@@ -59,7 +60,7 @@ def _body(file: _Binary, number: int, body: BodyLook, poses: Poses, kept: Array,
     places, turns = poses.places[body.name][kept], _xyzw(_continued(poses.turns[body.name][kept]))
     children = _points(file, body.name, body.points)
     node = file.node(body.name, children=children, translation=places[0], rotation=turns[0])
-    if body.surfaces or any(len(line) for line in body.lines):
+    if body.surfaces or any(len(line) for line in body.strokes):
         file.nodes[node]["mesh"] = _mesh(file, number, body)
     if times is not None:
         file.move(node, times, "translation", file.numbers(places))
@@ -76,7 +77,7 @@ def _mesh(file: _Binary, number: int, body: BodyLook) -> int:
     for surface in body.surfaces:
         corners, faces = file.numbers(surface.corners, ends=True), file.numbers(triangles(surface).reshape(-1, 1))
         parts.append({"attributes": {"POSITION": corners}, "indices": faces, "mode": TRIANGLES, "material": material})
-    for line in body.lines:
+    for line in body.strokes:
         pairs, mode = (np.repeat(line, 2, axis=0)[1:-1], LINES) if len(line) > 1 else (line, POINTS)
         corners = file.numbers(pairs, ends=True)
         parts.append({"attributes": {"POSITION": corners}, "mode": mode, "material": material})

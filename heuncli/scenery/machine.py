@@ -8,26 +8,33 @@ points, or, where these are one place, as the ellipsoid that has its inertia.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from types import MappingProxyType
 
 import numpy as np
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
+from heuncli.scenery.acting import ActingLook, acting_of
+from heuncli.scenery.discs import Disc
+from heuncli.scenery.elements import ElementLooks, elements_of
+from heuncli.scenery.marks import Mark, marks_of
+from heuncli.scenery.pitch_lines import BeltLook
+from heuncli.scenery.ropes import RopeLook, ropes_of
 from heuncli.scenery.solids import ROUND, Surface, ellipsoid, reached, surfaces_of
-from heuncli.scenery.wheels import spokes, wheel_shapes
+from heuncli.scenery.wheels import balls_of
 from heuncli.spec.models import Actuator, Bushing, Shape, Spec, Spring
+from heuncli.spec.names import GROUND
+from heuncli.tree.prepare import PreparedScene
 
-GROUND = "ground"
-NOTHING: Mapping[str, tuple[Array, ...]] = MappingProxyType({})
+SEVERAL = 2  # discs, between which a body without shapes is a line
 SMALL = 0.2  # of its radius of gyration: a body whose points lie within is drawn as it is spread
 OUTSIDE = 1e-9  # of the way from a shape's axis to a point: what it lies outside that shape by rounding
 
 
 class BodyLook(NamedTuple):
-    """A body: its named points (3,), the surfaces of its shapes, and lines between its points, or from these to it.
+    """A body: its named points (3,), the surfaces of its shapes, lines on it: rims, spokes, threads, outlines of cams.
 
-    spread: the surface is not its own, but of the ellipsoid that has its inertia.
+    spread: the surface is not its own, but of the ellipsoid that has its inertia. bars: lines between its points, or
+    from these to its shapes: what it is itself.
     """
 
     name: str
@@ -35,6 +42,12 @@ class BodyLook(NamedTuple):
     surfaces: tuple[Surface, ...]
     lines: tuple[Array, ...]
     spread: bool = False
+    bars: tuple[Array, ...] = ()
+
+    @property
+    def strokes(self) -> tuple[Array, ...]:
+        """Its bars and lines."""
+        return (*self.bars, *self.lines)
 
 
 class JointLook(NamedTuple):
@@ -61,9 +74,9 @@ class LineLook(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """All of a scene; grounded: points of the ground; paths: lines in it along which points run; strands: of belts.
+    """All of a scene; grounded: points of the ground; paths: lines on it, along which points run, and circles.
 
-    Strands stand on bodies and the ground, in their axes.
+    belts, ropes: what moves otherwise than one body does; marks: symbols that stand somewhere; acting: in joints.
     """
 
     title: str
@@ -72,11 +85,17 @@ class Machine(NamedTuple):
     lines: tuple[LineLook, ...]
     grounded: Mapping[str, Array]
     paths: tuple[Array, ...] = ()
-    strands: Mapping[str, tuple[Array, ...]] = NOTHING
+    belts: tuple[BeltLook, ...] = ()
+    ropes: tuple[RopeLook, ...] = ()
+    marks: tuple[Mark, ...] = ()
+    acting: tuple[ActingLook, ...] = ()
 
 
-def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
-    """What there is to be seen of a loaded spec; faces: of what is round, about its axis."""
+def machine_of(spec: Spec, faces: int = ROUND, scene: PreparedScene | None = None) -> Machine:
+    """What there is to be seen of a loaded spec; faces: of what is round, about its axis.
+
+    scene: the spec as it is assembled; without it there are no ropes over sheaves and no marks.
+    """
     joints = tuple(
         JointLook(name, j.kind, j.a, np.array(j.p), j.b, np.array(j.q), np.array(j.axis))
         for name, j in spec.joints.items()
@@ -86,58 +105,55 @@ def machine_of(spec: Spec, faces: int = ROUND) -> Machine:
         for name, f in spec.forces.items()
         if isinstance(f, Spring | Actuator | Bushing)
     )
-    bodies = tuple(_body(name, spec, joints, lines, faces) for name in spec.bodies)
+    elements = elements_of(spec, None if scene is None else scene.mechanism)
+    bodies = tuple(_body(name, spec, (joints, lines), elements, faces) for name in spec.bodies)
     grounded = {name: np.array(point) for name, point in spec.ground.points.items()}
-    paths = tuple(drawn_lines(spec, GROUND))
-    kinds = {own.type for own in spec.couplings.values()}
-    if "screw" in kinds:
-        from heuncli.scenery.threads import threads_of  # few scenes have screws
-
-        threads = threads_of(spec)
-        bodies = tuple(body._replace(lines=(*body.lines, *threads.get(body.name, ()))) for body in bodies)
-    if not kinds & {"gear", "belt"}:
-        return Machine(spec.title, bodies, joints, lines, grounded, paths)
-    from heuncli.scenery.pitch_lines import pitch_lines  # few scenes have gears
-
-    circles, strands = pitch_lines(spec)
-    bodies = tuple(body._replace(lines=(*body.lines, *circles.get(body.name, ()))) for body in bodies)
-    return Machine(spec.title, bodies, joints, lines, grounded, paths, strands)
+    paths = (*elements.lines.get(GROUND, ()), *(disc.rim for disc in elements.discs.get(GROUND, ())))
+    acting = tuple(acting_of(spec))
+    found = Machine(spec.title, bodies, joints, lines, grounded, paths, elements.belts, acting=acting)
+    if scene is None:
+        return found
+    ropes = ropes_of(scene.mechanism)
+    return found._replace(ropes=ropes, marks=tuple(marks_of(spec, scene, ropes)))
 
 
-def drawn_lines(spec: Spec, body: str) -> Iterator[Array]:
-    """Lines of a body, or of the ground: outlines of cams, and paths along which points run."""
-    if any(given.type == "cam" for given in spec.couplings.values()) or any(j.path for j in spec.joints.values()):
-        from heuncli.scenery.cams import cam_outlines, paths_of  # few scenes have them
-
-        yield from cam_outlines(spec, body)
-        yield from paths_of(spec, body)
-
-
-def shapes_of(spec: Spec, body: str) -> Sequence[Shape]:
+def shapes_of(spec: Spec, body: str, discs: Sequence[Disc]) -> Sequence[Shape]:
     """What a body is drawn by: its shapes; without any, the wheels that it is."""
-    return spec.bodies[body].shapes or tuple(wheel_shapes(spec, body))
+    return spec.bodies[body].shapes or (*balls_of(spec, body), *(disc.shape for disc in discs if disc.solid))
 
 
-def _body(name: str, spec: Spec, joints: tuple[JointLook, ...], lines: tuple[LineLook, ...], faces: int) -> BodyLook:
-    """What a body looks like."""
-    body = spec.bodies[name]
+def _body(
+    name: str,
+    spec: Spec,
+    held: tuple[tuple[JointLook, ...], tuple[LineLook, ...]],
+    elements: ElementLooks,
+    faces: int,
+) -> BodyLook:
+    """What a body looks like; held: by which joints and lines."""
+    body, discs = spec.bodies[name], elements.discs.get(name, ())
     points = {key: np.array(point, dtype=np.float64) for key, point in body.points.items()}
-    ends = [j.p for j in joints if j.a == name] + [j.q for j in joints if j.b == name]
-    ends += [line.p for line in lines if line.a == name] + [line.q for line in lines if line.b == name]
+    ends = [own.p for part in held for own in part if own.a == name]
+    ends += [own.q for part in held for own in part if own.b == name]
     ends += points.values()
-    shapes = shapes_of(spec, name)
+    shapes = shapes_of(spec, name, discs)
     surfaces = tuple(surface for shape in shapes for surface in surfaces_of(shape, faces))
+    rims = (disc.rim for disc in discs if body.shapes or not disc.solid)
+    spokes = (line for disc in discs if disc.spins for line in disc.spokes(surfaces))
+    drawn = (*elements.lines.get(name, ()), *rims, *spokes)
     if surfaces:
         ends += [np.array(shape.at) for shape in shapes if shape.type == "point"]
-        return BodyLook(name, points, surfaces, (*_arms(shapes, ends), *spokes(spec, name), *drawn_lines(spec, name)))
+        if body.shapes or len(discs) < SEVERAL:
+            return BodyLook(name, points, surfaces, drawn, bars=tuple(_arms(shapes, ends)))
+        between = _through([*ends, np.array(body.center, dtype=np.float64)])
+        return BodyLook(name, points, surfaces, drawn, bars=(between,))
     # of point masses alone neither centre nor inertia is known yet, nor needed
     centre = [np.array(shape.at) for shape in shapes] or [np.array(body.center, dtype=np.float64)]
-    line, drawn = _through([*ends, *centre]), tuple(drawn_lines(spec, name))
+    line = _through([*ends, *centre])
     moments = np.array(body.inertia, dtype=np.float64)
     gyration = np.sqrt(max(0.0, float(np.trace(moments)) / (2.0 * body.mass))) if body.mass > 0.0 else 0.0
     if not drawn and float(np.ptp(line, axis=0).max()) < SMALL * gyration:
         return BodyLook(name, points, (ellipsoid(body.mass, np.array(body.center), moments, faces),), (), True)
-    return BodyLook(name, points, (), (line, *drawn))
+    return BodyLook(name, points, (), drawn, bars=(line,))
 
 
 def _arms(shapes: Sequence[Shape], ends: Sequence[Array]) -> Iterator[Array]:

@@ -7,8 +7,8 @@ import numpy as np
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Results
-from heuncli.scenery.machine import GROUND
 from heuncli.spec.models import Spec
+from heuncli.spec.names import GROUND
 from heuncli.study.ask.study import Study
 
 MOTION = frozenset({"motion"})
@@ -26,11 +26,29 @@ class Poses(NamedTuple):
     attitudes: dict[str, Array]
     turns: dict[str, Array]
 
+    @property
+    def first(self) -> Poses:
+        """Those of the first instant alone."""
+        kept = ({name: own[:1] for name, own in part.items()} for part in (self.places, self.attitudes, self.turns))
+        return Poses(self.times[:1], *kept)
+
     def at(self, body: str, points: Array, k: int) -> Array:
         """Where points (..., 3) of a body stand in the world at the instant of a number."""
         if body == GROUND:
             return np.asarray(points, dtype=np.float64)
         return np.asarray(points @ self.attitudes[body][k].T + self.places[body][k])
+
+    def ways(self, body: str, point: Array) -> Array:
+        """Where a point (3,) of a body stands in the world at all instants, (n, 3)."""
+        if body == GROUND:
+            return np.broadcast_to(np.asarray(point, dtype=np.float64), (len(self.times), 3))
+        return np.asarray(self.attitudes[body] @ point + self.places[body])
+
+    def directions(self, body: str, axis: Array) -> Array:
+        """A direction (3,) in a body's axes in the world at all instants, (n, 3)."""
+        if body == GROUND:
+            return np.broadcast_to(np.asarray(axis, dtype=np.float64), (len(self.times), 3))
+        return np.asarray(self.attitudes[body] @ axis)
 
 
 def poses_of(study: Study, times: Array) -> Poses:

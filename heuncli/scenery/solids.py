@@ -17,7 +17,8 @@ class Surface(NamedTuple):
     """Faces over corners (n, 3), each a tuple of their numbers, counter-clockwise from outside; and edges to be drawn.
 
     edges: polylines (k, 3): the rims and ridges by which the shape is known. convex: whether it is seen as the hull of
-    its corners; a ring is as its outer rim. blur [m]: lines of its silhouette that are shorter are none.
+    its corners; a ring is as its outer rim. blur [m]: lines of its silhouette that are shorter are none. ball: centre
+    and radius of a sphere.
     """
 
     corners: Array
@@ -25,6 +26,7 @@ class Surface(NamedTuple):
     edges: tuple[Array, ...]
     convex: bool = True
     blur: float = 0.0
+    ball: tuple[Vec, float] | None = None
 
 
 def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
@@ -36,7 +38,8 @@ def surfaces_of(shape: Shape, faces: int = ROUND) -> tuple[Surface, ...]:
     if shape.type == "mesh":
         return (_mesh(shape),)
     if shape.type == "sphere":
-        return (_sphere(_vector(shape.center), shape.radius or 0.0, faces),)
+        radius = shape.radius or 0.0
+        return (_sphere(_vector(shape.center), radius, faces)._replace(ball=(shape.center or (0.0, 0.0, 0.0), radius)),)
     start, end = _vector(shape.from_), _vector(shape.to)
     if shape.type == "rod":
         radius = THIN * float(np.linalg.norm(end - start))

@@ -1,4 +1,4 @@
-"""What wheels look like: discs with spokes, which show how they turn, and balls; in their body's axes."""
+"""What wheels look like: discs and balls, in their body's axes, and the road where they touch it."""
 
 from __future__ import annotations
 
@@ -7,50 +7,34 @@ from collections.abc import Iterator
 import numpy as np
 
 from heuncli.results import Array
-from heuncli.shapes.rotations import perpendicular
+from heuncli.scenery.discs import Disc, direction
+from heuncli.scenery.poses import Poses
 from heuncli.spec.couplings import RollingWheel
-from heuncli.spec.models import Shape, Spec, Vec
-
-THICK = 0.06  # of its radius: how far a disc goes on either side of its rim
+from heuncli.spec.models import Shape, Spec
 
 
-def wheels_of(spec: Spec, body: str) -> Iterator[RollingWheel]:
-    """The wheels of a body."""
-    for given in spec.rolling.values():
-        if given.wheel.body == body:
-            yield given
+def wheel_discs(spec: Spec) -> Iterator[tuple[str, Disc]]:
+    """The discs that roll, each with its body."""
+    for wheel in spec.rolling.values():
+        if wheel.axis is not None:
+            yield wheel.wheel.body, Disc(np.array(wheel.wheel.point), direction(wheel.axis), wheel.radius)
 
 
-def wheel_shapes(spec: Spec, body: str) -> Iterator[Shape]:
-    """The discs and balls of a body that has no shapes of its own."""
-    for wheel in wheels_of(spec, body):
-        centre = np.array(wheel.wheel.point)
-        if wheel.axis is None:
+def balls_of(spec: Spec, body: str) -> Iterator[Shape]:
+    """The balls that a body without shapes of its own is."""
+    for wheel in spec.rolling.values():
+        if wheel.axis is None and wheel.wheel.body == body:
             yield Shape("sphere", center=wheel.wheel.point, radius=wheel.radius)
-        else:
-            half = THICK * wheel.radius * direction(wheel.axis)
-            yield Shape("cylinder", from_=vec(centre - half), to=vec(centre + half), radius=wheel.radius)
 
 
-def spokes(spec: Spec, body: str) -> Iterator[Array]:
-    """Lines (2, 3) across both faces of its discs, from rim to rim."""
-    for wheel in wheels_of(spec, body):
-        if wheel.axis is None:
-            continue
-        axle, centre = direction(wheel.axis), np.array(wheel.wheel.point)
-        for face in (-THICK, THICK):
-            for way in perpendicular(axle):
-                ends = np.array([-1.0, 1.0])[:, None] * way + face * axle
-                yield centre + wheel.radius * ends
-
-
-def direction(axis: Vec) -> Array:
-    """An axis at length 1."""
-    v = np.array(axis)
-    return np.asarray(v / np.sqrt(v @ v))
-
-
-def vec(x: Array) -> Vec:
-    """Three numbers."""
-    a, b, c = x.tolist()
-    return a, b, c
+def touched(wheel: RollingWheel, poses: Poses) -> tuple[Array, Array]:
+    """Where a wheel touches its plane at all instants (kernel/rolling.py), and the plane's normal, (n, 3) each."""
+    C = poses.ways(wheel.wheel.body, np.array(wheel.wheel.point))
+    n = poses.directions(wheel.on.body, direction(wheel.normal))
+    if wheel.axis is None:
+        return C - wheel.radius * n, n
+    k = poses.directions(wheel.wheel.body, direction(wheel.axis))
+    t = np.cross(k, n)
+    size = np.linalg.norm(t, axis=1, keepdims=True)
+    t = np.divide(t, size, out=np.zeros_like(t), where=size > 0.0)  # a rim that lies flat has no lowest point
+    return C - wheel.radius * np.cross(t, k), n

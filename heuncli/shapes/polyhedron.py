@@ -18,7 +18,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.meshes.model import crossed, middle_of, moments
+from heuncli.meshes.model import crossed, in_order, middle_of, moments
 from heuncli.records import record
 from heuncli.results import Array, Indices
 from heuncli.shapes.crossed_triangles import AT_ONCE, CrossedTriangles, crossings, levels, loops, met_at
@@ -60,7 +60,7 @@ def columns(u: Array, v: Array, w: Array, A: Array) -> Array:
 
 @record
 class LocalSurface:
-    """The surface in axes e, f, n about its middle: X (n, 3), and planes in ascending order.
+    """The surface in axes e, f, n about its middle: X (3, n), and planes in ascending order.
 
     order: which of the planes asked for they are; D (k,): their heights; low, high: see `levels`; A (m,): of the
     triangles in the plane, negative where they face down.
@@ -102,12 +102,12 @@ class Polyhedron(Thick):
         """The surface before planes; e1: the first axis in them."""
         first = perpendicular(n) if e1 is None else (e1, cross(n, e1))
         axes = np.stack([*first, n], axis=1)
-        X = (self.corners_at - self.middle) @ axes
+        X = np.ascontiguousarray(((self.corners_at - self.middle) @ axes).T)
         heights = d - n @ self.middle
         order = np.argsort(heights, kind="stable")
         D = heights[order]
-        low, high = levels(X[:, 2], self.triangles, D)
-        u, v = (X[:, i][self.triangles.T] for i in (0, 1))
+        low, high = levels(X[2], self.triangles, D)
+        u, v = (X[i].take(self.triangles.T) for i in (0, 1))
         A = 0.5 * ((u[1] - u[0]) * (v[2] - v[0]) - (u[2] - u[0]) * (v[1] - v[0]))
         return LocalSurface(axes, X, order, D, low, high, A)
 
@@ -133,8 +133,8 @@ class Polyhedron(Thick):
         Heights are taken from the top: what is near it loses no digits.
         """
         own = np.flatnonzero(at.low)
-        u, v, w = (at.X[:, i][self.triangles[own].T] for i in range(3))
-        top = float(at.X[:, 2].max())
+        u, v, w = (at.X[i].take(self.triangles[own].T) for i in range(3))
+        top = float(at.X[2].max())
         w = w - top
         U, V, W = total(u) / 3.0, total(v) / 3.0, total(w) / 3.0
         means = [
@@ -180,8 +180,8 @@ class Polyhedron(Thick):
         moments = np.zeros((3, len(d)))
         for c in self.crossed(at):
             p, q = met_at(at.X, c)
-            twice = p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]
-            terms = (0.5 * twice, (p[:, 0] + q[:, 0]) * twice / 6.0, (p[:, 1] + q[:, 1]) * twice / 6.0)
+            twice = p[0] * q[1] - p[1] * q[0]
+            terms = (0.5 * twice, (p[0] + q[0]) * twice / 6.0, (p[1] + q[1]) * twice / 6.0)
             moments += np.array([np.bincount(c.plane, term, len(d)) for term in terms])
         areas, first = np.empty(len(d)), np.empty((len(d), 3))
         areas[at.order] = moments[0]
@@ -197,7 +197,7 @@ class Polyhedron(Thick):
         edges = np.unique([0, *np.searchsorted(np.cumsum(count), most).tolist(), k])
         for begin, end in pairwise(edges.tolist()):
             low, high = np.clip(at.low, begin, end), np.clip(at.high, begin, end)
-            yield crossings(at.X[:, 2], self.triangles, at.D, low, high)
+            yield crossings(at.X[2], self.triangles, at.D, low, high)
 
     def outlines(self, n: Array, d: Array) -> tuple[Outline, ...]:
         """Where the planes meet the body: each region by the lines in 24 directions that enclose it."""
@@ -221,14 +221,14 @@ class Polyhedron(Thick):
         for c in self.crossed(at):
             line = loops(c, len(self.corners_at), len(at.D))
             p, q = met_at(at.X, c)
-            areas = np.bincount(line, 0.5 * (p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]))
-            around = np.bincount(line, np.sqrt(((q - p) ** 2).sum(axis=1)))
+            areas = np.bincount(line, 0.5 * (p[0] * q[1] - p[1] * q[0]))
+            around = np.bincount(line, np.sqrt(((q - p) ** 2).sum(axis=0)))
             plane = np.zeros(len(areas), dtype=np.intp)
             plane[line] = c.plane
             outer = areas > self.near * around
-            by_line = np.argsort(line, kind="stable")
+            by_line = in_order(line)
             starts = np.searchsorted(line[by_line], np.arange(len(areas)))
-            along = np.array([np.cos(AROUND), np.sin(AROUND)]).T @ p[by_line].T
+            along = np.array([np.cos(AROUND), np.sin(AROUND)]).T @ p.take(by_line, axis=1)
             reach = np.maximum.reduceat(along, starts, axis=1).T
             planes.append(plane[outer])
             reaches.append(reach[outer])
@@ -260,16 +260,16 @@ def told_apart(values: Array, near: float) -> Array:
 def parts_above(at: LocalSurface, c: CrossedTriangles) -> Array:
     """Moments (10, k) of the columns under the parts of triangles that are above the planes which cross these."""
     A = at.A[c.triangle]
-    a, b, d = (at.X[c.lone[:, i], :2].T for i in range(3))
-    s, t = c.part.T
+    a, b, d = (at.X[:2].take(own, axis=1) for own in c.lone)
+    s, t = c.part
     p, q = a + s * (b - a), a + t * (d - a)
     zero = np.zeros_like(s)
     tip, up = A * s * t, c.up
     found = np.zeros((10, len(at.D)))
     parts = (
-        (up, (a, p, q), (c.h[:, 0], zero, zero), tip),
-        (~up, (p, b, d), (zero, c.h[:, 1], c.h[:, 2]), A * (1.0 - s)),
-        (~up, (p, d, q), (zero, c.h[:, 2], zero), A * s * (1.0 - t)),
+        (up, (a, p, q), (c.h[0], zero, zero), tip),
+        (~up, (p, b, d), (zero, c.h[1], c.h[2]), A * (1.0 - s)),
+        (~up, (p, d, q), (zero, c.h[2], zero), A * s * (1.0 - t)),
     )
     for on, corners, heights, areas in parts:
         u, v = (np.stack([corner[i][on] for corner in corners]) for i in (0, 1))

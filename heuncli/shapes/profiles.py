@@ -82,7 +82,7 @@ def edges_of(part: Polyhedron, local: LocalSurface) -> Iterator[OutlineEdges]:
     """The edges of outlines, those of some planes at a time."""
     for c in part.crossed(local):
         p, q = met_at(local.X, c)
-        yield OutlineEdges(p, q, c.plane, loops(c, len(part.corners_at), len(local.D)))
+        yield OutlineEdges(p.T, q.T, c.plane, loops(c, len(part.corners_at), len(local.D)))
 
 
 def properties(

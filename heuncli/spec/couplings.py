@@ -183,6 +183,8 @@ class Rope(NamedTuple):
     """A rope without mass through points and over sheaves; length [m], None: as assembled, or by the law in time.
 
     tension_only: the run ends where it would push; with restitution it goes slack instead, and catches again.
+    stiffness [N/m], damping [N s/m]: of one that stretches, at its length without load, by a law at the start; such a
+    one that pulls alone goes slack.
     """
 
     through: tuple[Passage, ...]
@@ -190,7 +192,14 @@ class Rope(NamedTuple):
     tension_only: bool = False
     restitution: float | None = None
     law: Expression | None = None
+    stiffness: float | None = None
+    damping: float = 0.0
     type: Literal["rope"] = "rope"
+
+    @property
+    def stretches(self) -> bool:
+        """Whether its length is no condition."""
+        return self.stiffness is not None
 
     @property
     def joints(self) -> tuple[str, ...]:

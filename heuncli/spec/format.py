@@ -250,6 +250,8 @@ class CurveJoint(Bearing):
     z: PathPart = 0.0
     radius: Length | None = None
     normal: Direction | None = None
+    one_sided: Switch = False
+    restitution: Number | None = None
     initial: Sliding | None = None
 
 

@@ -11,6 +11,7 @@ from heuncli.spec.fields import (
     Angle,
     Anything,
     AsText,
+    Damping,
     Direction,
     Force,
     Length,
@@ -18,6 +19,7 @@ from heuncli.spec.fields import (
     Lift,
     Number,
     Rate,
+    Stiffness,
     Switch,
 )
 
@@ -120,6 +122,8 @@ class RopeEntry(Entry):
     length: LengthInTime | None = None
     tension_only: Switch = False
     restitution: Number | None = None
+    stiffness: Stiffness | None = None
+    damping: Damping | None = None
 
 
 CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry

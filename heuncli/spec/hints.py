@@ -26,7 +26,6 @@ from heuncli.spec.words import (
 AXES = {"x": "[1, 0, 0]", "y": "[0, 1, 0]", "z": "[0, 0, 1]"}
 DIRECTIONS = frozenset({"axis", "to_axis", "normal", "first_axis"})
 COORDINATES = frozenset({"angle", "rate", "travel", "speed"})
-STRETCH = ("stiffness", "damping")
 
 
 def called(key: str, known: Collection[str]) -> str | None:
@@ -69,11 +68,6 @@ def belonging(key: str, known: Collection[str]) -> str | None:
     if "lead" in known and key in OF_THREADS:
         return (
             "friction: {coefficient: 0.12, radius: 14 mm, speed: 0.01}, or with efficiency: 0.4 in place of the first"
-        )
-    if "through" in known and (key in STRETCH or called(key, STRETCH)):
-        return (
-            "a rope keeps its length; what stretches is a spring: between two points in its place, "
-            "or behind one of its ends (heun explain howto, Pulley)"
         )
     for keys, words in BY_KEYS:
         if key.lower() in words and set(keys) <= set(known):

@@ -146,7 +146,8 @@ class Joint(Generic[Ref, V]):
     Held start values of the coordinates are None where left out: angle [rad], rate [rad/s], travel [m], speed [m/s].
     length: of a rod [m], None = as assembled. stiffness: what shares out redundant reactions, of force [N/m] and moment
     [N m/rad] along the world's axes at the start, infinite where not given. drive: in a mechanism; a spec lists its
-    drives by themselves. restitution: of a rope that goes slack and catches; None: the run ends where it would push.
+    drives by themselves. restitution: of a rope that goes slack and catches, or what flies off a path and strikes it;
+    None: the run ends where it would push, or pull. one_sided: of a path, which only pushes, to its left.
     bearing: of its bearing diameter times width [m^2]. p_name, q_name: of the two points, where they have names. path:
     of a curve, from the point p on, a's axes; way: in a mechanism, its number among those along paths.
     """
@@ -174,6 +175,12 @@ class Joint(Generic[Ref, V]):
     q_name: str | None = None
     path: Path | None = None
     way: int = -1
+    one_sided: bool = False
+
+    @property
+    def opens(self) -> bool:
+        """Whether it may open: a rope, or a path that only pushes."""
+        return self.tension_only or self.one_sided
 
 
 class PointForce(NamedTuple):

@@ -224,6 +224,7 @@ class Resolver:
             p_name=a.name,
             q_name=b.name,
             path=self.path(joint) if isinstance(joint, f.CurveJoint) else None,
+            one_sided=getattr(joint, "one_sided", False),
         )
 
     def path(self, joint: f.CurveJoint) -> Path:
@@ -231,7 +232,9 @@ class Resolver:
         from heuncli.expressions.paths import path_beside, path_of  # with NumPy, which a spec without one needs not
 
         found = path_of((joint.x, joint.y, joint.z))
-        return found if joint.radius is None else path_beside(found, joint.radius, joint.normal or (0.0, 0.0, 1.0))
+        if joint.radius is None and not joint.one_sided:
+            return found
+        return path_beside(found, joint.radius or 0.0, joint.normal or (0.0, 0.0, 1.0))
 
     def drive(self, name: str, drive: f.DriveEntry) -> m.Drive:
         driven = drive_of(drive, self.document.joints[drive.joint].type)

@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, Protocol
 
+from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import TYPES
 from heuncli.spec import couplings as c
@@ -77,9 +78,9 @@ def conditions_of_belts(couplings: Mapping[str, f.CouplingEntry]) -> Iterator[Re
 
 
 def at_least(least: float) -> str:
-    """A number above zero with four digits, rounded up: what is written so is enough."""
+    """A number above zero with four digits, rounded up, but for its own rounding: what is written so is enough."""
     quantum = 10.0 ** (math.floor(math.log10(least)) - 3)
-    return f"{math.ceil(least / quantum) * quantum:.4g}"
+    return f"{math.ceil(least / quantum * (1.0 - tolerances.SAME_VALUE)) * quantum:.4g}"
 
 
 def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:
@@ -154,7 +155,8 @@ def rope(by: Following, name: str, entry: f.RopeEntry) -> c.Rope:
         length, law = law.constant, None
     elif law is not None:
         law = by.placed(law, f"couplings.{name}.length")
-    return c.Rope(through, length, entry.tension_only, entry.restitution, law)
+    stretching = entry.stiffness, entry.damping or 0.0
+    return c.Rope(through, length, entry.tension_only, entry.restitution, law, *stretching)
 
 
 def passage(by: Following, given: f.PassageEntry) -> c.Passage:

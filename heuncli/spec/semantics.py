@@ -147,8 +147,6 @@ def held_of(latch: f.LatchEntry, document: f.Document) -> Held | None:
 
 def limitable(kind: Kind) -> tuple[Literal["angle", "travel", "length"], ...]:
     """The coordinates of a kind of joint that can be limited, or held."""
-    if kind.follows_path:  # what runs along a path has no limits yet: the path has ends of its own
-        return ()
     return ("length",) if kind.keeps_distance else kind.coordinates
 
 

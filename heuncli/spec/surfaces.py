@@ -34,9 +34,10 @@ def surface_of(file: str, files: NamedFiles) -> tuple[TriangleMesh | None, list[
 def judged(shape: MeshShape, surface: TriangleMesh) -> Iterator[Wrong]:
     """Masses and inertias that are not computed with."""
     scale = 1.0 if shape.scale is None else shape.scale
-    if scale <= 0.0:  # told by the rules
+    given = shape.density if shape.mass is None else shape.mass
+    if scale <= 0.0 or given is None or given <= 0.0:  # told by the rules
         return
-    mass = shape.mass if shape.mass is not None else (shape.density or 0.0) * surface.volume * scale**3
+    mass = given if shape.mass is not None else given * surface.volume * scale**3
     if not is_in_range(mass) or not mass:
         yield Wrong(("file",), out_of_range(mass, "the mass of this shape [kg], its density times its volume,"))
         return

@@ -41,7 +41,8 @@ KEY_WORDS = {
     "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
     "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
     "rho": "density", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
-    "when": "time", "instant": "time", "t": "time", "point": "on", "one_sided": "tension_only", "slack": "tension_only",
+    "when": "time", "instant": "time", "t": "time", "point": "on", "slack": "tension_only",
+    "lifts": "one_sided", "unilateral": "one_sided",
 }  # fmt: skip
 SEVERAL = {  # words that mean one thing here and another there, the likeliest first
     "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
-from heuncli.mechanism.model import Assembly, Mechanism
+from heuncli.mechanism.couplings import Coupling
+from heuncli.mechanism.model import Assembly, Mechanism, RopeLoad
+from heuncli.mechanism.stretching import rope_load
 from heuncli.records import replace
+from heuncli.spec import couplings as spec
 from heuncli.tree.rope_ways import routed
 
 
-def with_started(mechanism: Mechanism, start: Assembly) -> Mechanism:
-    """The mechanism with the conditions of such couplings. Raises SolveError where they cannot be as they are asked."""
+def with_started(mechanism: Mechanism, start: Assembly, t0: float) -> Mechanism:
+    """The mechanism with the conditions of such couplings, and the loads of ropes that stretch.
+
+    Raises SolveError where they cannot be as they are asked.
+    """
     made = tuple(
         MADE[coupling.given.type](mechanism, start, coupling) if coupling.given.type in MADE else coupling
         for coupling in mechanism.couplings
     )
-    return replace(mechanism, couplings=made)
+    loads = tuple(pull(coupling, t0) for coupling in made if coupling.stretched is not None)
+    return replace(mechanism, couplings=made, loads=(*mechanism.loads, *loads))
+
+
+def pull(coupling: Coupling, t0: float) -> RopeLoad:
+    """The load of a rope that stretches, whose length without load is as asked, or as assembled."""
+    rope, row = coupling.given, coupling.stretched
+    assert isinstance(rope, spec.Rope) and row is not None and row.length is not None
+    length = row.length if rope.law is None else rope.law.value(t0)
+    return rope_load(coupling.name, rope, row, length)
 
 
 MADE = {"rope": routed}

@@ -79,7 +79,7 @@ def attachments(mechanism: Mechanism) -> tuple[dict[int, list[Array]], dict[int,
             if end >= 0:
                 points[end].append(point)
     for coupling in mechanism.couplings:
-        for part in (part for row in coupling.rows for part in row.parts if part.turns_its_bodies):
+        for part in (part for row in coupling.carriers for part in row.parts if part.turns_its_bodies):
             free.pop(part.a, None)
             free.pop(part.b, None)
     for named in mechanism.points.values():

@@ -19,6 +19,7 @@ from heuncli.mechanism.model import (
     NamedPoint,
     PairLoad,
     PointLoad,
+    RopeLoad,
     ThreadLoad,
 )
 from heuncli.named_tuples import NamedTuple
@@ -119,6 +120,7 @@ class _LoadRows:
     def __init__(self, mechanism: Mechanism, frame: LayoutFrame, programs: tuple[tuple[Program, ...], ...]) -> None:
         self.mechanism, self.frame = mechanism, frame
         self.made: list[LoadRow] = []
+        self.parts = sum(len(row.parts) for coupling in mechanism.couplings for row in coupling.rows)  # before a rope's
         for load, own in zip(mechanism.loads, programs, strict=True):
             x, y, z = (own + (NO_PROGRAM,) * (3 - len(own)))[:3]
             values = x, y, z
@@ -128,6 +130,8 @@ class _LoadRows:
                 self._pair_load(load, values)
             elif isinstance(load, BushingLoad):
                 self._bushing(load, own)
+            elif isinstance(load, RopeLoad):
+                self._rope(load, values)
             elif isinstance(load, ThreadLoad):
                 self._thread(load)
             else:
@@ -177,6 +181,25 @@ class _LoadRows:
                     resistances=elastic.damping,
                 )
             )
+
+    def _rope(self, load: RopeLoad, values: Components) -> None:
+        """A rope that stretches, along its parts."""
+        self.made.append(
+            LoadRow(
+                kernel.ROPE,
+                GROUND,
+                GROUND,
+                *values,
+                ZERO,
+                in_body=int(load.only_pulls),
+                stiffness=load.stiffness,
+                length=load.length,
+                coefficient=load.damping,
+                part=self.parts,
+                part_count=len(load.parts),
+            )
+        )
+        self.parts += len(load.parts)
 
     def _thread(self, load: ThreadLoad) -> None:
         row = self.frame.rows.index(len(self.mechanism.joints) + load.coupling)
@@ -258,8 +281,10 @@ class _LoadRows:
 def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
     """The programs of loads and drives: what they do between the stages of a step must not be passed over.
 
-    Of conditions only where they change.
+    Of conditions only where they change, and of ropes that stretch where they go slack: else those are springs, which
+    the steps' own error follows.
     """
+    springy = {id(load.value) for load in mechanism.loads if isinstance(load, RopeLoad)}
     driven = {id(law.value): law.value for law in mechanism.laws}
     loads = {id(e): e for load in mechanism.loads for e in load.values}
     parts = {
@@ -270,9 +295,9 @@ def watch_rows(mechanism: Mechanism, programs: ValuePrograms) -> list[WatchRow]:
         for e in part.given
     }
     watched = [
-        WatchRow(programs.at[key], curved=int(key in driven), condition=0, load=parts.get(key, -1))
+        WatchRow(programs.at[key], curved=int(key in driven), condition=int(key in springy), load=parts.get(key, -1))
         for key, e in (loads | driven).items()
-        if e.constant is None
+        if e.constant is None and (e.held or key not in springy)
     ]
     conditions = (programs.at[id(condition.value)] for condition in mechanism.conditions)
     return watched + [WatchRow(program, curved=0, condition=1, load=-1) for program in conditions]
@@ -300,6 +325,8 @@ def load_row(row: int, quantity: str) -> VariableRow:
     """The variable that is a part of what a load acts between; row: the first of its rows."""
     if quantity in ("length", "speed"):
         return VariableRow(is_rate=int(quantity == "speed"), is_point=kernel.OF_LOAD, load=row, part=kernel.ALONG_LINE)
+    if quantity == "drawn":
+        return VariableRow(is_point=kernel.OF_LOAD, load=row, part=kernel.DRAWN)
     of, _, axis = quantity.partition("_")
     return VariableRow(is_point=kernel.OF_LOAD, load=row + int(of == "turn"), part="xyz".index(axis))
 

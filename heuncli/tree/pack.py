@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -17,6 +18,7 @@ from heuncli.mechanism.model import (
     Joint,
     JointLoad,
     Mechanism,
+    RopeLoad,
     Stop,
 )
 from heuncli.records import replace
@@ -115,7 +117,7 @@ def framed(
 
 def to_be_kept(mechanism: Mechanism, named: frozenset[str]) -> set[int]:
     """The joints that are not to be cut."""
-    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named or j.path is not None}
+    kept = {k for k, j in enumerate(mechanism.joints) if j.name in named}
     kept |= {s.joint for s in mechanism.stops if s.quantity != "length"}
     kept |= {k for k, j in enumerate(mechanism.joints) if j.drive is not None and j.drive.quantity != "length"}
     # of a universal that is cut nothing tells the angle
@@ -239,6 +241,11 @@ class _Builder:
         path = self.mechanism.joints[h.joint].path if h.joint >= 0 else None
         if path is None or quantity != "travel":
             return row
+        own = [stop for stop in self.mechanism.stops if stop.joint == h.joint]
+        path = path.beyond(
+            any(stop.low is not None and stop.low >= path.first for stop in own),
+            any(stop.high is not None and stop.high <= path.last for stop in own),
+        )
         reach, slope, bend = path.greatest
         return replace(
             row, path=self._put_path(path), pieces=len(path.coefficients), period=path.period, reach=reach, slope=slope,
@@ -341,7 +348,9 @@ class _Builder:
                 if joint.tension_only:
                     self._rope(k)
                 self._row(k, kernel.ROD, program=program, length=length)
-            for d in kind.guides:
+            if joint.path is not None:
+                self._track(k, joint.path)
+            for d in () if kind.follows_path else kind.guides:
                 self._row(k, kernel.GUIDE, e=joint_frame(joint, d))
             for d, e in kind.dots:
                 f = to_direction(joint, s.R_ref, e)
@@ -371,6 +380,23 @@ class _Builder:
             )
             self.part_rows.append(dot)
 
+    def _track(self, k: int, path: Path) -> None:
+        """The rows across the path of a joint that was cut, along which a counter counts."""
+        joint, first = self.mechanism.joints[k], self._put_path(path)
+        h = path.normal if path.normal.any() else Z if self.mechanism.planar else path.off_all_slopes
+        side = (
+            -1.0 if joint.one_sided else 1.0
+        )  # what holds one way alone does so as a rope does: it must not be pushed
+        for faced in range(2):
+            if joint.one_sided and not faced:
+                self._opening(k, joint.name, joint.restitution)
+            self._row(k, kernel.TRACK)
+            self.closure_rows[-1] = replace(
+                self.closure_rows[-1], lift=first, pieces=len(path.coefficients), period=path.period,
+                radius=side * path.radius, h=side * h, faced=faced, counter=len(self.counters),
+            )  # fmt: skip
+        self.counters[k] = -1
+
     def coupled_rows(self) -> None:
         """The rows of the couplings, which come after those of the cut joints."""
         freedoms = {(f.joint, f.quantity): i for i, f in enumerate(self.freedoms)}
@@ -390,6 +416,10 @@ class _Builder:
                         self._put_path(part.cam.lift)
                 paths = (self._path(self.in_tree(i)) for i in ends(row))
                 self.paths.append(sorted({i for path in paths for i in path}, reverse=True))
+        for load in self.mechanism.loads:
+            if isinstance(load, RopeLoad):
+                first = len(self.part_rows)
+                self.part_rows += [part_row(part, first, self.in_tree, self.relative, freedoms) for part in load.parts]
 
     def _rope(self, k: int) -> None:
         """The row that comes next is that of a rope."""
@@ -421,6 +451,11 @@ class _Builder:
         self.one_sided.append(ContactRow(row, sense, len(self.contacts), limited, held_at))
         if stop.quantity == "length":
             self._row(stop.joint, kernel.ROD, length=limit)
+        elif joint.path is not None:
+            anywhere = stop.latch is not None and stop.latch.at is None
+            slope = joint.path.at(self.starts[stop.joint].travel if anywhere else limit)[1]
+            weight = math.sqrt(float(slope @ slope))
+            self._row(stop.joint, kernel.ALONG, length=limit, freedom=limited, weight=weight)
         elif stop.quantity == "travel":
             self._row(stop.joint, kernel.GUIDE, length=limit, e=joint.axis)
         else:
@@ -462,7 +497,8 @@ class _Builder:
         energy_group = -1
         for k in self.counters:
             self.counters[k] = len(self.y)
-            self.y.append(self.starts[k].angle)
+            on_path = self.mechanism.joints[k].path is not None
+            self.y.append(self.starts[k].travel if on_path else self.starts[k].angle)
             self.weights.append(0.0)
         work_at = len(self.y) if work else -1
         if work:
@@ -505,13 +541,21 @@ class _Builder:
             pack=Pack(),
             work_at=work_at,
             contacts=tuple(self.contacts),
-            flat=self.mechanism.planar and moves_in_plane(tables["bodies"], tables["freedoms"]),
+            flat=self._is_flat() and moves_in_plane(tables["bodies"], tables["freedoms"]),
         )
         return frame_of(with_islands(layout))
 
+    def _is_flat(self) -> bool:
+        """Whether the kernel may move a scene declared planar in the plane: rows of paths need space."""
+        kinds = {row.kind for row in self.closure_rows}
+        return self.mechanism.planar and kinds.isdisjoint((kernel.TRACK, kernel.ALONG))
+
     def _counter_rows(self) -> list[CounterRow]:
-        joints = self.mechanism.joints
+        joints, owners = self.mechanism.joints, self.row_joint
         return [
-            CounterRow(self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis)
+            CounterRow(
+                self.in_tree(joints[k].a), self.in_tree(joints[k].b), at, joints[k].axis,
+                1 + owners.index(k) if joints[k].path is not None else 0,
+            )
             for k, at in self.counters.items()
-        ]
+        ]  # fmt: skip

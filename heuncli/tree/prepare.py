@@ -61,7 +61,7 @@ def prepare(
     if mechanism.couplings:
         from heuncli.tree.couplings_at_start import with_started  # few scenes have them
 
-        mechanism = with_started(mechanism, start)
+        mechanism = with_started(mechanism, start, t0)
     scene = arranged(mechanism, start, stages=stages)
     if fit is not None:
         scene = fit(scene)

@@ -70,11 +70,13 @@ class RopeWay:
 
 
 def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Coupling:
-    """A rope with its conditions."""
+    """A rope with its conditions; one that stretches with what a load pulls along."""
     rope = coupling.given
     assert isinstance(rope, spec.Rope)
     stays = [stay(mechanism, start, coupling.name, k, given) for k, given in enumerate(rope.through)]
     way = way_round(mechanism, coupling.name, stays)
+    if not (rope.tension_only and rope.restitution is not None):  # else it may be slack there
+        require_directions(coupling.name, stays)
     held = [k for k, x in enumerate(stays) if k in (0, len(stays) - 1) or x.given.grips]
     rows = []
     for first, last in pairwise(held):
@@ -85,6 +87,8 @@ def routed(mechanism: Mechanism, start: Assembly, coupling: Coupling) -> Couplin
         elif rope.law is not None:
             length = 0.0  # the law tells all of it, and moves the start
         rows.append(CoupledRow(parts, length, 1.0, rope.tension_only, rope.restitution, rope.law))
+    if rope.stretches:
+        return replace(coupling, stretched=rows[0])  # no sheave holds it
     return replace(coupling, rows=tuple(rows))
 
 
@@ -257,6 +261,16 @@ def require_apart(name: str, stays: Sequence[Stay]) -> None:
                 else "move one of them, or make the sheave smaller"
             )
             raise refused(name, at, "rope-side", message, hint)
+
+
+def require_directions(name: str, stays: Sequence[Stay]) -> None:
+    """Raise SolveError where two points of a taut rope coincide."""
+    near = tolerances.NO_LENGTH * max(float(np.abs(x.place).max()) for x in stays)
+    for k, (a, b) in enumerate(pairwise(stays)):
+        if not (a.radius or b.radius) and float(np.abs(b.place - a.place).max()) <= near:
+            message = "this point and the one before it coincide at the start: the strand between has no direction"
+            hint = "move one of them, or leave one out; a rope that is slack there has tension_only and restitution"
+            raise refused(name, k + 1, "no-length", message, hint)
 
 
 def up_in(mechanism: Mechanism) -> Array:

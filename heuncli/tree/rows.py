@@ -110,6 +110,8 @@ class LoadRow:
     to_frame: Sequence[float] = (0.0,) * 9
     stiffnesses: Vector = ZERO
     resistances: Vector = ZERO
+    part: int = 0
+    part_count: int = 0
 
 
 @record
@@ -142,6 +144,7 @@ class ClosureRow:
     radius: float = 0.0
     pivot: Vector = ZERO
     h: Vector = ZERO
+    counter: int = 0
 
 
 @record
@@ -172,12 +175,13 @@ class ContactRow:
 
 @record
 class CounterRow:
-    """The angle of a pin that was cut."""
+    """The angle of a pin that was cut, or the place of what was cut along its path."""
 
     a: int
     b: int
     at: int
     axis: Array
+    track: int
 
 
 @record

@@ -8,7 +8,9 @@ together hang on each other and, but for those, only circles of welds are cut. J
 turn about the axis without inertia are cut first, for there would be nothing behind that freedom; among the others of
 one layer those that make most conditions are kept.
 `line`, `plane` and `curve` carry a body only from their `from` side, a rod never does; a body that nothing carries
-hangs on six freedoms of its own. So does one with a path whose runner is all that holds it: a curve is never cut.
+hangs on six freedoms of its own. So does one with a path whose runner is all that holds it. A curve is cut only where
+none but curves, or what must not be cut, make a closed chain: several on one body, or one on a point that is held; and
+where it may lift off.
 """
 
 from __future__ import annotations
@@ -57,13 +59,18 @@ def span(mechanism: Mechanism, kept: Collection[int]) -> Spanning:
     depth = _depths(mechanism, edges)
     free: list[int] = []
     while True:
-        found = _walk(mechanism, _forest(mechanism, depth, kept, free), free)
-        turned = next((k for k in found.cut if JOINTS[mechanism.joints[k].kind].follows_path), None)
+        forest = _forest(mechanism, depth, kept, free)
+        found = _walk(mechanism, forest, free)
+        turned = None
+        for k in (k for k in found.cut if mechanism.joints[k].path is not None):
+            joint = mechanism.joints[k]
+            closes = k not in forest[joint.b] or joint.b == GROUND or joint.a in free
+            if closes and k in kept:
+                raise SolveError(_found_from_pose(joint) if joint.one_sided else _path_unheld(joint))
+            turned = turned if closes else joint.a
         if turned is None:
             return found
-        if mechanism.joints[turned].b == GROUND or mechanism.joints[turned].a in free:
-            raise SolveError(_path_unheld(mechanism.joints[turned]))
-        free.append(mechanism.joints[turned].a)
+        free.append(turned)
 
 
 def _depths(mechanism: Mechanism, edges: dict[int, list[int]]) -> list[int]:
@@ -91,12 +98,12 @@ def _forest(
     null = null_axes(mechanism)
     between = passing_on(mechanism, null)
 
-    def urgency(k: int) -> tuple[bool, bool, bool, bool, int, int, int]:
+    def urgency(k: int) -> tuple[bool, bool, bool, bool, bool, int, int, int]:
         joint = joints[k]
         passes_on = not between.isdisjoint((joint.a, joint.b))
         spins = any(_leaves(joint, end == joint.b, null[end]) for end in {joint.a, joint.b} & null.keys())
         layer, kind = min(depth[joint.a], depth[joint.b]), JOINTS[joint.kind]
-        return k not in kept, not passes_on, not kind.is_rigid, spins, layer, -kind.rows, k
+        return k not in kept, not kind.follows_path, not passes_on, not kind.is_rigid, spins, layer, -kind.rows, k
 
     group = list(range(len(mechanism.bodies) + 1))
 
@@ -112,7 +119,7 @@ def _forest(
     forest = defaultdict(list)
     for k in sorted(range(len(joints)), key=urgency):
         joint = joints[k]
-        if JOINTS[joint.kind].in_tree == "never":
+        if JOINTS[joint.kind].in_tree == "never" or joint.one_sided:
             continue
         a, b = root(joint.a), root(joint.b)
         if a == b:
@@ -160,13 +167,6 @@ def _leaves(joint: Joint, to: bool, null: Array) -> bool:
 
 def _over_driven(mechanism: Mechanism, k: int) -> Problem:
     joint = mechanism.joints[k]
-    if joint.path is not None:
-        return Problem(
-            "over-driven",
-            f"joints.{joint.name} runs along a path, and every other joint of a closed chain through it does so, or is "
-            "driven, limited or named",
-            hint="a body on two paths: a second body on the second, with a ball or pin between the two",
-        )
     what = "is driven" if joint.drive else "is named in an expression"
     if JOINTS[joint.kind].coordinates == ():
         what = "has a turn_spring"
@@ -176,6 +176,14 @@ def _over_driven(mechanism: Mechanism, k: int) -> Problem:
         "over-driven",
         f"joints.{joint.name} {what}, and so is every other joint of a closed chain through it",
         hint="leave at least one joint of each closed chain neither driven nor limited nor named",
+    )
+
+
+def _found_from_pose(joint: Joint) -> Problem:
+    return Problem(
+        "over-driven",
+        f"joints.{joint.name} is one-sided: its travel follows from the pose, and nothing drives, limits or names it",
+        hint="name the point itself: body.P.x; or leave one_sided out",
     )
 
 

@@ -9,11 +9,11 @@ from typing import Any
 
 from heuncli.decks.naming import DeckNames
 from heuncli.decks.registry import DECKS
-from heuncli.load_cases.asked import parse
 from heuncli.load_cases.gathered import gathered
 from heuncli.spec.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
+from heuncli.telling.asked_instants import parse
 
 SPECS = Path(__file__).parents[2] / "specs"
 CASES = (

@@ -168,7 +168,7 @@ def test_what_is_expected_at_an_instant_that_was_set_away_stops_no_run(heun: Heu
         (["run", "hanging.yaml", "--set", "m"], "NAME=VALUE"),
         (["run", "hanging.yaml", "--at", "1"], "there is one instant"),
         (["run", "swinging.yaml", "--at", "1.5"], "the run goes from 0 to 1 s"),
-        (["run", "swinging.yaml", "--at", "soon"], "expected numbers"),
+        (["run", "swinging.yaml", "--at", "soon"], "expected a number, first, last"),
         (["run", "hanging.yaml", "--tolerance", "-1"], "between 1e-14 and 0.1"),
         (["run", "hanging.yaml", "--measure", "joints.pivt.force.z"], "'pivt' is not a result [unknown-path]"),
         (["run", "hanging.yaml", "--method", "rk5"], "'rk5' is no method of integration [unknown-method]"),

@@ -39,7 +39,7 @@ REFUSED = {
     ("conrod.yaml", "sections.middle"): ("bad-option", "sections.middle is one cut", "sections.middle.M1"),
     ("conrod.yaml", "sections.shank", "sections.middle"): ("bad-option", "sections.middle is one cut", ""),
     ("conrod.yaml", "sections.shank", "--at", "7"): ("bad-option", "--at 7", "the run goes from 0 to 0.0209"),
-    ("conrod.yaml", "sections.shank", "--at", "now"): ("bad-option", "--at now", "expected numbers"),
+    ("conrod.yaml", "sections.shank", "--at", "now"): ("bad-option", "--at now", "expected a number, first, last"),
     ("conrod.yaml", "sections.shank", "--units", "kg"): ("bad-option", "kg", ""),
     ("held.yaml", "sections.along", "--at", "1"): ("bad-option", "--at 1", "there is one instant"),
     ("held.yaml", "conrod.yaml", "sections.along"): ("unknown-path", "sections.along", "in conrod.yaml"),

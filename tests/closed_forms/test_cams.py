@@ -14,32 +14,12 @@ from heuncli.results import Array
 from heuncli.spec.load import load
 from heuncli.spec.models import Spec
 from heuncli.tree.cam_flanks import flank_of
-from tests.shared.cams import lift, table
+from tests.shared.cams import eccentric, lift, table
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study
 
 E, R, ROLLER = 0.01, 0.05, 0.012  # of an eccentric disc: how far its centre is off the axis, its radius; of the roller
 VALVE_TRAIN = ROOT / "specs" / "valve_train.yaml"
-
-
-def eccentric(rise: str, contact: str, rate: float = 20.0, more: str = "two_sided: true") -> str:
-    """A tappet of 0.5 kg that a disc lifts along y, turning about z at a constant rate from its lowest place."""
-    return f"""
-heun: 1
-gravity: [0, -9.81, 0]
-tables: {{lift: {rise}}}
-ground: {{points: {{O: [0, 0, 0]}}}}
-bodies:
-  disc: {{mass: 2, center: [0, 0, 0], inertia: [0.01, 0.01, 0.02], points: {{O: [0, 0, 0]}}}}
-  tappet: {{mass: 0.5, center: [0, 0.1, 0], inertia: [1e-3, 1e-3, 1e-3], points: {{P: [0, 0, 0]}}}}
-joints:
-  shaft: {{type: pin, from: ground.O, to: disc.O, axis: [0, 0, 1]}}
-  guide: {{type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}}
-drives: {{motor: {{joint: shaft, angle: {rate}*t}}}}
-couplings:
-  cam: {{type: cam, of: [shaft, guide], lift: lift, at: tappet.P, contact: {contact}, {more}}}
-analysis: {{duration: {6.0 / rate}, samples: 13}}
-"""
 
 
 def flat(x: Array) -> Array:
@@ -212,6 +192,32 @@ def test_a_face_that_turns_with_its_disc() -> None:
     with pytest.raises(SolveError, match="turns as fast as its disc"):
         solved(text)
     solved(text.replace(rise, table(lambda x: -0.05 * x, -0.3, 0.3, 6)).replace("20.0*t", "0.2*sin(20*t)"))
+
+
+SWINGING = """
+heun: 1
+gravity: [0, 0, 0]
+tables: {lift: RISE}
+bodies:
+  frame: {mass: 2, center: [0, 0, 0], inertia: [0.1, 0.1, 0.2], position: [1, 2, 0],
+    points: {O: [0, 0, 0], P: [-0.3, 0.1, 0]}}
+  disc: {mass: 2, center: [0.02, 0, 0], inertia: [0.01, 0.01, 0.02], points: {O: [0, 0, 0]}}
+  lever: {mass: 1, center: [0.1, 0, 0], inertia: [0.01, 0.01, 0.02], points: {P: [0, 0, 0], roll: [0.3, 0, 0]}}
+joints:
+  shaft: {type: pin, from: frame.O, to: disc.O, axis: [0, 0, 1], to_axis: [0, 0, 1]}
+  pivot: {type: pin, from: frame.P, to: lever.P, axis: [0, 0, 1], to_axis: [0, 0, 1]}
+couplings:
+  cam: {type: cam, of: [shaft, pivot], lift: lift, at: lever.roll, contact: point, two_sided: true}
+analysis: {type: state}
+"""
+
+
+def test_a_lever_that_counts_from_where_it_is_drawn_starts_on_its_cam() -> None:
+    """What the cam turns the lever by is counted, and does not move the frame, which stands where it is held."""
+    start = solved(SWINGING.replace("RISE", table(lambda x: 0.1 + 0.05 * np.cos(x), 0.0, 2.0 * math.pi, 24)))
+    shaft, pivot = (float(start.coordinates[name]["angle"][0]) for name in ("shaft", "pivot"))
+    assert pivot == pytest.approx(0.1 + 0.05 * math.cos(shaft), abs=1e-5)
+    near(start.bodies["frame"]["position"][0], [1.0, 2.0, 0.0], 1.0, 1e-14)
 
 
 def test_a_tappet_without_spring_lifts_off() -> None:

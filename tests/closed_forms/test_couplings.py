@@ -129,6 +129,21 @@ def test_screw_between_a_spindle_and_a_nut(order: list[str]) -> None:
     near(found.joints["n"]["moment"][0][2], -thrust * by, thrust, ROUNDING)
 
 
+@pytest.mark.parametrize("reverse", [1, -1])
+def test_a_spindle_that_slides_takes_its_thread_with_it(reverse: int) -> None:
+    """x_n - x_s = p phi: N (1/m_n + 1/m_s + p^2/J) = p T/J; both slide, and none of it is lost in half a second."""
+    scene = screw(lead="1 m") | {"gravity": [0, 0, 0], "analysis": {"duration": 0.5, "samples": 3}}
+    a, b = ("ground.A", "spindle.c")[::reverse]
+    scene["joints"]["p"] = {"type": "cylinder", "from": a, "to": b, "axis": [0, 0, 1]}
+    scene["forces"] = {"motor": {"type": "couple", "on": "spindle", "vector": [0, 0, 3]}}
+    scene["bodies"]["spindle"]["mass"] = 5.0
+    found, p = solved(scene), reverse / math.tau
+    thrust = 3 * p / 0.02 / (1 / 20 + 1 / 5 + p * p / 0.02)
+    near(found.couplings["thread"]["force"], thrust, abs(thrust), 1e-9)
+    for body, mass in (("nut", 20), ("spindle", -5)):
+        near(found.bodies[body]["position"][-1][2], thrust / mass * 0.125, 1.0, 1e-9)
+
+
 def test_screw_in_a_cylinder() -> None:
     scene = screw(of=["n"], lead="1 m")
     del scene["bodies"]["spindle"], scene["joints"]["p"]
@@ -239,6 +254,20 @@ def test_a_blow_through_a_screw(order: list[str]) -> None:
         near(struck["joints"]["n"]["moment"][2], -thrust * by, 3, ROUNDING)
 
 
+def test_rest_many_turns_away() -> None:
+    """20 turns of a spindle, 1000 turns of a pinion, before a spring bears; what nothing holds is told by both."""
+    scene = screw() | {"analysis": {"type": "rest"}}
+    scene["joints"]["p"].pop("initial")
+    free, spring = to_yaml(scene), {"type": "torque", "joint": "n", "value": "-981*n.travel"}
+    near(solved({**scene, "forces": {"s": spring}}).coordinates["p"]["angle"], -20 * math.tau, 20 * math.tau, 1e-9)
+    with pytest.raises(SolveError, match="turns on and on, joints.n slides on and on: nothing holds it"):
+        solved(free)
+    train = pair(teeth=[10, 10000]) | {"analysis": {"type": "rest"}}
+    train["joints"]["p"].pop("initial")
+    train["forces"]["s"] = {"type": "turn_spring", "joint": "w", "stiffness": 5000 / math.tau, "angle": 0}
+    near(solved(train).coordinates["p"]["angle"], 1000 * math.tau, 1000 * math.tau, 1e-9)
+
+
 def test_modes_of_geared_shafts() -> None:
     """A spring of 50 N m/rad about the wheel's axis swings it with nine times the pinion's inertia."""
     scene = pair(teeth=[20, 60])
@@ -305,3 +334,29 @@ def test_what_two_drives_leave_open_of_teeth() -> None:
     found = solved(scene).couplings["mesh"]
     assert all(np.isnan(found[name]).all() for name in ("force", "radial", "normal"))
     assert not found["axial"].any()
+
+
+def test_what_two_stops_that_are_struck_at_once_leave_open_of_a_coupling() -> None:
+    """Carts of 2 and 3 kg that move against each other come to both stops: Σ m Δv = -1.5 N s is all that is certain."""
+    scene = {
+        "ground": {"points": {"A": [0, 0, 0], "B": [0, 1, 0]}},
+        "bodies": {
+            name: {"mass": m, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0]}}
+            for name, m in (("a", 2), ("b", 3))
+        },
+        "joints": {
+            "p": {"type": "slide", "from": "ground.A", "to": "a.o", "axis": [1, 0, 0], "initial": {"speed": 1}},
+            "q": {"type": "slide", "from": "ground.B", "to": "b.o", "axis": [1, 0, 0]},
+        },
+        "couplings": {"tie": {"type": "ratio", "of": ["p", "q"], "factors": [1, 1]}},
+        "stops": {
+            "far": {"joint": "p", "travel": [None, 0.5], "restitution": 0.5},
+            "near": {"joint": "q", "travel": [-0.5, None], "restitution": 0.5},
+        },
+        "analysis": {"duration": 1, "samples": 2},
+    }
+    (struck,) = solved(scene).impulses
+    tie = struck["couplings"]["tie"]
+    assert tie["open"] == ["force", "on.a.force.x", "on.ground.force.x", "on.ground.moment.z", "on.b.force.x"]
+    assert np.isnan([tie["force"], tie["on"]["a"]["force"][0], tie["on"]["b"]["force"][0]]).all()
+    near(struck["foundation"]["force"], (-1.5, 0.0, 0.0), 1.0, ROUNDING)

@@ -235,8 +235,6 @@ def test_a_start_where_a_path_meets_itself() -> None:
 
 
 @pytest.mark.parametrize(("head", "message"), [
-    ("stops: {s: {joint: wire, travel: [0, 2]}}", "a curve has no travel to be limited"),
-    ("latches: {s: {joint: wire}}", "a curve has no coordinate: a latch holds one"),
     ("forces: {f: {type: damper, joint: wire, force: '-3*rate'}}", "by a law of its rate acts in a pin or slide"),
     ("forces: {f: {type: friction, joint: wire, coefficient: 0.3, speed: 0.01}}", "with a coefficient acts in a pin"),
     ("forces: {f: {type: torque, joint: wire, value: 3}}", "a torque acts about a pin or along a slide"),
@@ -385,15 +383,6 @@ def test_what_is_no_path(x: str, z: str, start: str, message: str) -> None:
     text = text or bead("{x: [0, 1], y: [0, 1]}", x, z, start, "[0, 1]").replace("x: tx, ", "")
     with pytest.raises(SpecError, match=message):
         solved(text)
-
-
-def test_two_paths_under_one_body() -> None:
-    """A closed chain of two such joints is refused by name, with what to do."""
-    straight = "{x: [0, 1, 2, 3], y: [0, 1, 2, 3], interpolation: cubic}"
-    text = bead(straight, "0", "0", "travel: 1", "[0, 1]")
-    second = "  second: {type: curve, from: ground.O, to: {body: bead, at: [0.5, 0, 0]}, x: tx}\nanalysis"
-    with pytest.raises(SolveError, match="runs along a path, and every other joint of a closed chain"):
-        solved(text.replace("analysis", second))
 
 
 SHAPES: tuple[Callable[[Array], Array], ...] = (np.cos, np.sin, lambda s: 0.2 * s)

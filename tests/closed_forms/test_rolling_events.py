@@ -190,6 +190,30 @@ def test_of_four_wheels_only_sums_are_certain() -> None:
     assert set(wheel) == {"joints.jfl.force.z", "couplings.wfl.normal"}
 
 
+BALL = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  ball: {mass: 3, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {c: [0, 0, 0]}, position: [0, 0, 0.2]}
+rolling:
+  one: {wheel: ball.c, shape: sphere, radius: 0.2, on: ground.O, normal: [0, 0, 1]}
+  two: {wheel: ball.c, shape: sphere, radius: 0.2, on: ground.O, normal: [0, 0, 1]}
+analysis: {type: state}
+"""
+
+
+@pytest.mark.parametrize("least_norm", [False, True])
+def test_two_contacts_of_one_ball_bear_it_together_where_there_is_no_joint(least_norm: bool) -> None:
+    """What each bears is open, however it is asked for: nothing is weighed between contacts."""
+    r = solved(BALL, least_norm=least_norm)
+    near(r.foundation["force"], [[0.0, 0.0, -3 * G]], 100.0)
+    for name in ("one", "two"):
+        assert np.isnan(r.couplings[name]["normal"]).all()
+    terms = [(set(own["terms"]), own["value"]) for own in r.certain_sums]
+    near(next(value for t, value in terms if t == {"couplings.one.normal", "couplings.two.normal"}), 3 * G, 100.0)
+
+
 def test_no_rest_pose_that_a_wheel_rolls_to() -> None:
     """An eccentric disc would roll to where its centre of mass is lowest: where that is hangs on the way."""
     text = DISC.replace("START", "").replace("center: [0, 0, 0]", "center: [0.05, 0, 0]").replace(", }", "}")

@@ -47,7 +47,7 @@ def jack(
 
 
 def told(found: Results) -> tuple[float, float, float]:
-    """Thrust ON the nut along z; the power that goes into the spindle's drive by the spindle's speed; the efficiency."""
+    """Thrust ON the nut along z; the torque that goes into the spindle as it turns; the efficiency."""
     own, turning = found.couplings["thread"], found.coordinates["spin"]["rate"][0]
     into = -own["on"]["spindle"]["moment"][0] @ found.bodies["spindle"]["angular_velocity"][0] / abs(turning)
     near(found.joints["spin"]["drive"][0] * turning, into * abs(turning), W, ROUNDING)
@@ -103,7 +103,7 @@ def test_left_to_itself_it_runs_down_or_creeps() -> None:
 
 
 def test_where_it_jams_and_where_two_answers_meet_its_law() -> None:
-    """A light spindle: p (mu r - p) m > J + p mu J / r is Painleve's; told at the start, on either side of the limit."""
+    """Painleve's, of a light spindle: m p (mu r - p) > J (1 + mu p / r); told at the start, on both sides of that."""
     mu, p = 0.2, LEAD / math.tau
     limit = 100 * p * (mu * R - p) / (1 + mu * p / R)
     for start, code in ((-3.0, "friction-jams"), (3.0, "friction-not-unique")):

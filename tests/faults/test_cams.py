@@ -5,26 +5,11 @@ from __future__ import annotations
 import pytest
 
 from heuncli.errors import HeunError
-from tests.shared.cams import PERIOD
+from tests.shared.cams import PERIOD, eccentric
 from tests.shared.scenes import solved
 
 TABLE = f"{{x: [0, 90 deg, 180 deg, 270 deg, 360 deg], y: [40 mm, 45 mm, 50 mm, 45 mm, 40 mm], {PERIOD}}}"
-CAM = "{type: cam, of: [shaft, guide], lift: lift, at: tappet.P, contact: flat, normal: [0, 1, 0], two_sided: true}"
-SCENE = f"""
-heun: 1
-tables: {{lift: {TABLE}}}
-ground: {{points: {{O: [0, 0, 0]}}}}
-bodies:
-  disc: {{mass: 2, center: [0, 0, 0], inertia: [0.01, 0.01, 0.02], points: {{O: [0, 0, 0]}}}}
-  tappet: {{mass: 0.5, center: [0, 0.1, 0], inertia: [1e-3, 1e-3, 1e-3], points: {{P: [0, 0, 0]}}}}
-joints:
-  shaft: {{type: pin, from: ground.O, to: disc.O, axis: [0, 0, 1]}}
-  guide: {{type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}}
-drives: {{motor: {{joint: shaft, angle: 20*t}}}}
-couplings:
-  cam: {CAM}
-analysis: {{duration: 0.3, samples: 3}}
-"""
+SCENE = eccentric(TABLE, "flat, normal: [0, 1, 0]", 20)
 WRONG = {
     "180 deg, 270 deg": ("270 deg, 180 deg", "table-shape"),
     "90 deg, 180 deg": ("180 deg, 180 deg", "table-shape"),

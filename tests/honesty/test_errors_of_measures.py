@@ -49,6 +49,82 @@ def test_the_error_of_a_place_covers_a_coarse_run() -> None:
         assert solved.measure(f"max {path}").error == told
 
 
+DRUM = """
+heun: 1
+space: planar
+gravity: [0, -10]
+ground: {points: {O: [0, 0]}}
+bodies:
+  drum: {mass: 1, center: [0, 0], inertia: 0.1, points: {c: [0, 0]}}
+  load: {mass: 1, center: [0, 0], inertia: 0.1, points: {p: [0, 0]}, position: [1, -1]}
+joints: {pin: {type: pin, from: ground.O, to: drum.c}}
+couplings: {rope: {type: rope, through: [{sheave: drum.c, radius: 0.2, slip: none, side: left}, load.p]}}
+drives: {motor: {joint: pin, rate: 1}}
+analysis: {duration: 1, samples: 11}
+"""
+WHEEL = """
+heun: 1
+gravity: [0, 0, -10]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  wheel: {mass: 1, center: [0, 0, 0], inertia: [0.01, 0.02, 0.01], points: {c: [0, 0, 0]},
+          orientation: {axis: [1, 0, 0], angle: 0.4}, angular_velocity: {vector: [0, 20, 1], frame: body}}
+rolling: {rim: {wheel: wheel.c, axis: [0, 1, 0], radius: 0.2, on: ground.O, normal: [0, 0, 1], held: true}}
+analysis: {duration: 1, samples: 11}
+"""
+SUM = """
+heun: 1
+gravity: [0, -10, 0]
+ground: {points: {A: [0, 0, 0], B: [1, 0, 0]}}
+bodies:
+  a: {mass: 1, center: [1, 0, 0], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 0]}}
+  b: {mass: 1, center: [0.5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 0]}, position: [1, 0, 0]}
+joints:
+  p: {type: pin, from: ground.A, to: a.o, axis: [0, 0, 1]}
+  q: {type: pin, from: ground.B, to: b.o, axis: [0, 0, 1]}
+couplings: {sum: {type: ratio, of: [p, q], factors: [0.001, 0.003]}}
+analysis: {duration: 1, samples: 11}
+"""
+SWINGING = """
+heun: 1
+gravity: [0, 0, -3]
+ground: {points: {A: [0, 0, 0], B: [1, 0, 0]}}
+bodies: {a: {mass: 1, center: [1, 0, 0.1], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 0], p: [1.2, 0.1, 0.3]}}}
+joints: {u: {type: universal, from: ground.A, to: a.o, axis: [0, 1, 0], to_axis: [0, 0, 1]}}
+forces:
+  turning: {type: turn_spring, joint: u, stiffness: 40}
+  spring: {type: spring, from: ground.B, to: a.p, stiffness: 20, length: 0.2}
+analysis: {duration: 2, samples: 11}
+"""
+
+
+def test_the_error_of_the_central_axis_covers_a_coarse_run() -> None:
+    """Its point is s × M / s²: near next to no force it errs by more than force and moment do of their largest."""
+    for quantity in ("point", "direction"):
+        path = f"foundation.axis.{quantity}"
+        coarse, close = (heuncli.solve(text=SWINGING, tolerance=tolerance)[path] for tolerance in (1e-3, 1e-10))
+        off = np.linalg.norm(coarse.values - close.values, axis=1).max()
+        assert close.error < 1e-2 * off < off <= coarse.error < 10.0 * off
+
+
+@pytest.mark.parametrize(
+    ("scene", "path"),
+    [
+        (DRUM, "couplings.rope.on.drum.moment"),
+        (WHEEL, "couplings.rim.on.ground.point"),
+        (SUM, "couplings.sum.moment"),
+        (SUM, "couplings.sum.shares.gravity.moment"),
+    ],
+    ids=["drum", "wheel", "sum", "share"],
+)
+def test_the_error_of_what_a_coupling_exerts_covers_a_coarse_run(scene: str, path: str) -> None:
+    """What turns a drum, where a wheel touches, a load of small factors: none of them is an action as it stands."""
+    asked = {"by_cause": "shares" in path}
+    coarse, close = (heuncli.solve(text=scene, tolerance=tolerance, **asked)[path] for tolerance in (1e-3, 1e-10))
+    off = np.linalg.norm((coarse.values - close.values).reshape(11, -1), axis=1).max()
+    assert close.error < 1e-2 * off < off <= coarse.error < 1e2 * off
+
+
 @pytest.mark.heavy
 def test_an_extreme_beside_a_singular_pose_is_not_known() -> None:
     """The least acceleration, −1.2 g, lies in the flat pose, around which the search looks at nothing."""

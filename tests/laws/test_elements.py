@@ -152,7 +152,7 @@ def rail(held: str, runner: str = "runner.P") -> str:
 
 @pytest.mark.parametrize("held", ["ball", "pin, axis: [0, 1, 0]", "weld"])
 def test_a_path_that_its_runner_alone_holds(held: str) -> None:
-    """A curve is never cut, whichever of its bodies is held or stands first."""
+    """Its curve is not cut, whichever of its bodies is held or stands first."""
     found = solved(rail(held))
     every_body_balances(sources.parsed(rail(held)), found)
     energy = found.energy["kinetic"] + found.energy["potential"]
@@ -160,9 +160,16 @@ def test_a_path_that_its_runner_alone_holds(held: str) -> None:
     assert found.coordinates["wire"]["travel"][-1] != found.coordinates["wire"]["travel"][0]
 
 
-def test_a_path_over_a_point_of_the_ground_is_refused() -> None:
+def test_a_path_over_a_point_of_the_ground() -> None:
+    """The rail falls along it: the curve closes a loop, and its travel is found from the pose; driven it is refused."""
+    found = solved(rail("ball", "ground.O"))
+    every_body_balances(sources.parsed(rail("ball", "ground.O")), found)
+    energy = found.energy["kinetic"] + found.energy["potential"]
+    near(energy, energy[0], 10.0, 1e-9)
+    assert found.coordinates["wire"]["travel"][0] == pytest.approx(1.0, abs=1e-12)
+    drive = "drives: {go: {joint: wire, travel: '1 + 0.5*t'}}\nanalysis"
     with pytest.raises(SolveError) as error:
-        solved(rail("ball", "ground.O"))
+        solved(rail("ball", "ground.O").replace("analysis", drive))
     (problem,) = error.value.problems
     assert problem.code == "path-unheld"
     assert problem.hint

@@ -60,21 +60,32 @@ THERE = (
     "hand.top",
 )
 SLIPS = pytest.mark.parametrize("slip", ["", ", slip: none"])
+STRETCHES = "it stretches"
+KINDS = pytest.mark.parametrize("slip", ["", ", slip: none", STRETCHES])
+STRETCHING = "type: rope, stiffness: 4e3, damping: 50"
 
 
 def block(slip: str = "", back: bool = False, sides: tuple[str, str] = ("under", "over")) -> str:
     """The block, its rope listed from either end."""
     way = ", ".join(reversed(THERE) if back else THERE)
-    return BLOCK.replace("WAY", way).replace("SLIP", slip).replace("SIDE1", sides[0]).replace("SIDE2", sides[1])
+    text = BLOCK.replace("WAY", way).replace("SIDE1", sides[0]).replace("SIDE2", sides[1])
+    return kept(text, slip)
 
 
 def jib(slip: str = "", side: float = 0.02) -> str:
     """The jib; side: speed of the load across the sheave's plane."""
-    return JIB.replace("SLIP", slip).replace("SIDE", str(side))
+    return kept(JIB.replace("SIDE", str(side)), slip)
+
+
+def kept(text: str, slip: str) -> str:
+    """The scene with a rope that slips, or grips, or stretches."""
+    if slip == STRETCHES:
+        return text.replace("type: rope", STRETCHING).replace("SLIP", "")
+    return text.replace("SLIP", slip)
 
 
 @pytest.mark.heavy
-@SLIPS
+@KINDS
 @pytest.mark.parametrize("scene", [jib, block])
 def test_tangent_as_dual_numbers_tell(scene, slip: str) -> None:  # type: ignore[no-untyped-def]
     """At the start, and far beside it, where strands leave their planes."""
@@ -86,13 +97,14 @@ def test_tangent_as_dual_numbers_tell(scene, slip: str) -> None:  # type: ignore
         assert np.abs(tangent(workspace_of(layout), t, state) - exact).max() <= 1e-12 * np.abs(exact).max()
 
 
-@SLIPS
+@KINDS
 @pytest.mark.parametrize("scene", [jib, block])
 def test_energy_is_kept(scene, slip: str) -> None:  # type: ignore[no-untyped-def]
-    """A rope does no work: its conditions and their derivatives belong together."""
+    """A rope does no work: its conditions and their derivatives belong together; what stretches keeps or loses it."""
     results = solved(scene(slip))
     energy = results.energy
-    total = energy["kinetic"] + energy["potential"]
+    total = energy["kinetic"] + energy["potential"] - energy["work"]
+    assert (energy["work"][-1] < -0.01) == (slip == STRETCHES)
     assert np.abs(total - total[0]).max() <= 10 * HELD * np.abs(total).max()
 
 
@@ -128,12 +140,12 @@ def test_its_length_as_the_poses_tell_it() -> None:
     assert np.ptp(hand[:, 1]) > 0.1
 
 
-@SLIPS
+@KINDS
 def test_listed_from_the_other_end(slip: str) -> None:
     """The same rope; the tensions before and behind what grips change places."""
     there, back = solved(block(slip)), solved(block(slip, back=True))
     one, other = there.couplings["rope"], back.couplings["rope"]
-    last = "last_tension" if slip else "tension"
+    last = "last_tension" if "none" in slip else "tension"
     assert one["tension"] == pytest.approx(other[last], rel=1e-8)
     assert one[last] == pytest.approx(other["tension"], rel=1e-8)
     assert one["on"]["upper"]["moment"] == pytest.approx(other["on"]["upper"]["moment"], abs=1e-7)

@@ -121,6 +121,28 @@ forces:
 """
 
 
+# a runner held at a limit of its path, which swings with its body; another hangs from it
+HELD = """
+heun: 1
+gravity: [0.3, -9.81, 1]
+tables:
+  x: {x: [-2, -1, 0, 1, 2], y: [-2, -1, 0, 1.2, 2], interpolation: cubic}
+  y: {x: [-2, -1, 0, 1, 2], y: [2, 0.5, 0, 0.5, 2], interpolation: cubic}
+  z: {x: [-2, -1, 0, 1, 2], y: [1, 0.5, 0, 0.1, -1], interpolation: cubic}
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  arm: {mass: 3, center: [0.2, 0.1, 0], inertia: [0.4, 0.3, 0.5], points: {O: [0, 0, 0]}, angular_velocity: [1, 2, 3]}
+  runner: {mass: 2, center: [0.1, 0.2, 0.3], inertia: [0.3, 0.2, 0.3], points: {P: [0, 0, 0], Q: [0.3, 0, 0.1]}}
+  hung: {mass: 1, center: [0.1, 0.4, 0], inertia: [0.3, 0.2, 0.3], points: {P: [0, 0, 0]}}
+joints:
+  hub: {type: ball, from: ground.O, to: arm.O}
+  wire: {type: curve, from: arm.O, to: runner.P, x: x, y: y, z: z, initial: {travel: 0.7}}
+  link: {type: ball, from: runner.Q, to: hung.P}
+stops: {end: {joint: wire, travel: [null, 0.7]}}
+analysis: {duration: 1, samples: 2}
+"""
+
+
 def scene_of(kind: str, which: Any) -> Layout:
     """A scene, laid out."""
     if kind == "spec":
@@ -132,6 +154,7 @@ def scene_of(kind: str, which: Any) -> Layout:
         "thin": lambda: to_yaml(thin_rods(which)[0]),
         "rolling": lambda: rolling_scene(which)[0],
         "curve": lambda: coupled_scene(which, ("curve",)),
+        "tracks": lambda: coupled_scene(which, ("tracks",)),
         "spinning": lambda: parallelogram(1.0, 0.5, 3, which),
         "text": lambda: which,
     }
@@ -147,6 +170,7 @@ CASES = [
     *(("thin", seed) for seed in (0, 1)),
     *(("rolling", seed) for seed in (3, 4, 5)),
     *(("curve", seed) for seed in (0, 1)),  # a point on its path, a roller beside
+    *(("tracks", seed) for seed in (0, 1)),  # two points of a body, each on its path
     ("spinning", BALLS), ("text", LOADED), ("text", ELASTIC), ("text", FOUR_BAR.replace("SPACE", "spatial")),
     ("text", FOUR_BAR.replace("SPACE", "planar")),
 ]  # fmt: skip
@@ -162,3 +186,14 @@ def test_as_dual_numbers_tell(kind: str, which: Any) -> None:
         state, exact = dual_tangent(layout, t, start)
         found = tangent(workspace_of(layout), t, state)
         assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()
+
+
+def test_a_limit_of_a_path_that_holds() -> None:
+    """The same with the contact closed."""
+    layout = scene_of("text", HELD)
+    start = layout.y0 + MOVED * np.random.default_rng(1).standard_normal(layout.n_state)
+    state, exact = dual_tangent(layout, 0.1, start, closed=1.0)
+    at = workspace_of(layout)
+    at.hold([1.0])
+    found = tangent(at, 0.1, state)
+    assert np.abs(found - exact).max() <= 1e-12 * np.abs(exact).max()

@@ -59,9 +59,29 @@ def on(read: Model, joint: Joint, carrier: str) -> Turning:
 
 
 def parts(read: Model, first: Joint, second: Joint) -> tuple[str, Turning, Turning]:
-    """The carrier and both members."""
-    (carrier,) = {first.a.body, first.b.body} & {second.a.body, second.b.body}
-    return carrier, on(read, first, carrier), on(read, second, carrier)
+    """The carrier and both members; one that turns beside the carrier does so about the carrier's own axis."""
+    shared = {first.a.body, first.b.body} & {second.a.body, second.b.body}
+    if shared:
+        (carrier,) = shared
+        return carrier, on(read, first, carrier), on(read, second, carrier)
+    for arm in read.joints:
+        for beside, mate in ((first, second), (second, first)):
+            base = {arm.a.body, arm.b.body} & {beside.a.body, beside.b.body}
+            carriers = {arm.a.body, arm.b.body} & {mate.a.body, mate.b.body}
+            if len(base) == len(carriers) == 1 and coaxial(read, arm, beside):
+                (carrier,), (body,) = carriers, {beside.a.body, beside.b.body} - base
+                own, other = on(read, arm, carrier)._replace(body=body), on(read, mate, carrier)
+                return (carrier, own, other) if beside is first else (carrier, other, own)
+    raise ValueError(f"{first.name}, {second.name}")
+
+
+def coaxial(read: Model, one: Joint, other: Joint) -> bool:
+    """Whether two joints turn about one line, as all stands at the start."""
+    state = start_state(read.scene)
+    (P, n), (Q, m) = (
+        (placed(state, j.a.body).point(j.a.point), placed(state, j.a.body).rotation @ j.axis) for j in (one, other)
+    )
+    return bool(np.linalg.norm(cross(n, m)) < 1e-9 and np.linalg.norm(cross(n, Q - P)) < 1e-9)
 
 
 def gear(read: Model, name: str, given: Mapping[str, Any], first: Joint, second: Joint) -> Teeth:

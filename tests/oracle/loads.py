@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from tests.oracle import gears
+from tests.oracle import gears, ropes
 from tests.oracle.read import GROUND, End, Joint, Model, State, at_time, end, placed, start_state, vector_at
 from tests.oracle.rows import coordinates, directions
 from tests.oracle.turns import Array, attitude, cross, unit
@@ -47,7 +47,7 @@ def pushes(scene: Model, state: State, t: float) -> dict[str, list[Push]]:
     }
     for name, spec in scene.loads.items():
         found[name] = KINDS_OF_LOAD[spec["type"]](scene, state, t, spec)
-    for name, pulls in gears.pulls(scene, state).items():
+    for name, pulls in (gears.pulls(scene, state) | ropes.pulls(scene, state)).items():
         found[name] = [Push(body, place, F, np.zeros(3)) for body, place, F in pulls]
     return found
 

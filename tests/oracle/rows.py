@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from tests.oracle import cams, gears
+from tests.oracle import cams, gears, ropes
 from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Joint, Model, Scene, State, model, placed
 from tests.oracle.sums import sums
@@ -122,7 +122,7 @@ class Rows(NamedTuple):
 
 
 def assemble(scene: Model, state: State, t: float) -> Rows:
-    """The rows of all joints of a scene, and of its sums, wheels, gears and cams."""
+    """The rows of all joints of a scene, and of its sums, wheels, gears, cams and ropes."""
     rows: list[Row] = []
     J: list[Array] = []
     gamma: list[float] = []
@@ -134,6 +134,7 @@ def assemble(scene: Model, state: State, t: float) -> Rows:
             J.append(line)
             gamma.append(bias)
     others = (*sums_of(scene, state), *lines(scene, state), *gears.lines(scene, state), *cams.lines(scene, state))
+    others += tuple(ropes.lines(scene, state))
     for name, e, line, bias in others:
         rows.append(Row(name, False, e, zero, zero, zero, 0.0, 0.0))
         J.append(line)

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
+from heuncli.mechanism.model import Joint
 from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Placed, placed
 from tests.oracle.rows import assemble, velocities
 from tests.oracle.scenes import Maker
 from tests.oracle.turns import random_rotation
 from tests.shared import checks
+from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.scenes import near
 from tests.shared.seeds import spared
 from tests.shared.trees import ABOUT, Case, case
@@ -80,3 +82,33 @@ def test_motion_and_loads_of_what_runs_along_a_path(seed: int) -> None:
     accuracy = c.study.results.accuracy
     assert accuracy["energy_drift"] <= 1e-8
     assert accuracy["balance_residual"] <= 1e-10
+
+
+@pytest.mark.parametrize("seed", spared(range(3), frozenset({0})))
+def test_a_body_with_two_points_on_paths(seed: int) -> None:
+    """One of the two closes a loop: everything is as the other solution has it."""
+    scene = coupled_scene(seed, ("tracks",))
+    scene["forces"] = {k: v for k, v in scene.get("forces", {}).items() if v["type"] not in ("motor", "bushing")}
+    without = ("latches", "impulses", "sections")
+    c = case({k: v for k, v in scene.items() if k not in without} | {"foundation": {"about": ABOUT.tolist()}})
+    assert any(joint.path is not None for joint in cut_joints(c))
+    checks.same_accelerations(c)
+    checks.same_reactions(c)
+    checks.same_foundation(c)
+    for name, told in c.found.coordinates.items():
+        (own,) = (j for j in c.read.joints if j.name == name)
+        for k, state in enumerate(c.states if own.track is not None else ()):
+            A, B = placed(state, own.a.body), placed(state, own.b.body)
+            x, v = seen(A, own.a.point, B.point(own.b.point), B.speed(own.b.point))
+            assert own.track is not None
+            s, radius = own.track.stand(x), scene["joints"][name].get("radius", 0.0)
+            near(told["travel"][k], s, c.length)
+            if not radius:
+                slope = own.track.spline(s, 1)
+                near(told["speed"][k], float(v @ slope) / float(slope @ slope), 1.0, 1e-8)
+
+
+def cut_joints(c: Case) -> list[Joint]:
+    """The joints that close loops."""
+    layout = c.study.setup.scene.layout
+    return [layout.mechanism.joints[k] for k in layout.spanning.cut]

@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 
-from tests.oracle.gears import load, pulls, teeth
-from tests.oracle.loads import pushes
-from tests.oracle.read import State, model, start_state
+from tests.oracle.gears import Teeth, load, pulls, teeth
+from tests.oracle.read import State, model, placed, start_state
 from tests.oracle.rows import assemble, coordinates, velocities
-from tests.oracle.solve import accelerations, acting, scene_length
+from tests.oracle.solve import accelerations, acting, scene_length, wrench_map
 from tests.oracle.sums import exerted, sums
 from tests.oracle.threads import threads
 from tests.oracle.turns import Array
 from tests.shared import checks
 from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.geared_scenes import geared
-from tests.shared.scenes import near
+from tests.shared.scenes import near, terms_at
 from tests.shared.seeds import spared
+from tests.shared.train_scenes import train
 from tests.shared.trees import ABOUT, Case, case
 
 ALL = spared(range(15), frozenset({1, 2, 3}))
@@ -67,6 +68,56 @@ def test_what_is_coupled_twice(kind: str) -> None:
     told = c.found.couplings
     assert all(np.isnan(told[own]["on"][body]["force"]).any() or np.isnan(told[own]["on"][body]["moment"]).any()
                for own in told for body in told[own]["on"])  # fmt: skip
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("seed", range(14))
+def test_trains_with_more_meshes_than_hold_them(seed: int) -> None:
+    """Planets between suns, a ring and each other, in closed loops of meshes; certain sums against the dense matrix."""
+    c = train(seed)
+    as_the_oracle_says(c)
+    certain_sums_are_certain(c)
+
+
+def test_trains_hold_much_twice() -> None:
+    """So that what is said of them is not said of nothing."""
+    found = [train(seed).found for seed in range(14)]
+    assert sum(own.model["redundant"] > 1 for own in found) >= 4
+    sums = [name for own in found for one in own.certain_sums for name in one["terms"] if name.startswith("couplings.")]
+    assert len(sums) >= 10
+
+
+def certain_sums_are_certain(c: Case) -> None:
+    """None of the dense solution's self-stresses has a share in a sum that is told, and its value is the oracle's."""
+    for k, state in enumerate(c.states):
+        o, t = c.oracle[k], float(c.study.results.time[k])
+        size = scene_length(c.read, state)
+        found = accelerations(c.read, state, t, acting(c.read, state, t, size), size)
+        rows = {row.joint: i for i, row in enumerate(found.rows.rows)}
+        ways = {own.name: forward(c, own, state) for own in teeth(c.read)}
+        for told in c.found.certain_sums:
+            line, weight = np.zeros(len(found.rows.rows)), 0.0
+            for path, factor in terms_at(told["terms"], k).items():
+                _, name, what, *component = path.split(".")
+                weight += abs(factor)
+                if name in ways:
+                    line[rows[name]] += factor * ways[name]
+                    continue
+                joint = next(j for j in c.read.joints if j.name == name)
+                row = {"force": 0, "moment": 3}[what] + "xyz".index(component[0])
+                line += factor * wrench_map(found.rows, joint)[row]
+            near(line @ found.self_stress, 0.0, weight * np.abs(found.self_stress).max())
+            near(told["value"][k], line @ found.least, weight * c.force[k] * max(o.length, 1.0))
+
+
+def forward(c: Case, own: Teeth, state: State) -> float:
+    """1 where the oracle's direction of a tooth force is that in which the first gear drives on, else -1."""
+    joint = next(j for j in c.read.joints if j.name == c.scene["couplings"][own.name]["of"][0])
+    at, carrier = placed(state, joint.b.body), placed(state, own.carrier)
+    axis = placed(state, joint.a.body).rotation @ joint.axis
+    way = np.cross(axis, carrier.point(own.P) - at.point(joint.b.point))
+    way = way if own.first == joint.b.body else -way
+    return math.copysign(1.0, float(way @ (carrier.rotation @ own.f)))
 
 
 def drawn(kind: str, seed: int) -> dict[str, Any]:

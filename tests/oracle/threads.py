@@ -2,8 +2,8 @@
 
     N: the multiplier of the thread's row, along its axis; the flank's own pressure is N / cos(lambda)
     against the sliding  mu |N| cos(lambda) r / cos(lambda) about, and mu |N| sin(lambda) / cos(lambda) along the axis
-Each thread carries N = N_0 + sum of a_k |N_k|, linear on every branch of the signs: all branches are tried, and one has to
-answer with its own signs.
+Each thread carries N = N_0 + sum of a_k |N_k|, linear on every branch of the signs: all branches are tried, and one has
+to answer with its own signs.
 """
 
 from __future__ import annotations

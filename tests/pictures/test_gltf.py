@@ -13,6 +13,7 @@ import trimesh
 
 from heuncli.pictures.courses import instants
 from heuncli.results import Array
+from heuncli.scenery.elements import elements_of
 from heuncli.scenery.gltf import binary
 from heuncli.scenery.machine import Machine, machine_of, shapes_of
 from heuncli.scenery.poses import Poses, poses_of, up_of
@@ -84,7 +85,11 @@ def test_another_program_finds_each_shape_closed_and_of_its_volume(name: str) ->
             found.setdefault(body, []).append(mesh)
     for look in machine.bodies:
         body, meshes = spec.bodies[look.name], found.pop(look.name, [])
-        volumes = [volume(shape) for shape in shapes_of(spec, look.name) if shape.type != "point"]
+        volumes = [
+            volume(shape)
+            for shape in shapes_of(spec, look.name, elements_of(spec, None).discs.get(look.name, ()))
+            if shape.type != "point"
+        ]
         if look.spread:
             volumes = [spread(body)]
         with np.errstate(invalid="ignore"):  # flat things have no volume to divide by
@@ -143,7 +148,7 @@ def test_up_is_y_and_lengths_are_metres(name: str) -> None:
         for point, place in body.points.items():
             assert glb.node(f"{body.name}.{point}")["translation"] == place.tolist()
         lines = [glb.numbers(part["attributes"]["POSITION"]) for part in parts(glb, body.name) if part["mode"] < 4]
-        drawn_lines = [line for line in body.lines if len(line)]
+        drawn_lines = [line for line in body.strokes if len(line)]
         assert len(lines) == len(drawn_lines)
         for found, line in zip(lines, drawn_lines, strict=True):
             assert np.allclose([*found[:1], *found[1::2]], line, rtol=SINGLE)

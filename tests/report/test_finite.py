@@ -74,7 +74,7 @@ joints:
 couplings:
   valve: {type: cam, of: [cam, guide], lift: lift, at: tappet.face, contact: flat, normal: [0, 1, 0], two_sided: true}
   belt: {type: belt, of: [cam, other], radii: [0.1, 0.2], pretension: 5}
-  thread: {type: screw, of: [spin, run], lead: 0.1}
+  thread: {type: screw, of: [spin, run], lead: 0.1, friction: {coefficient: 0.1, radius: 0.05, speed: 0.1}}
   cable: {type: rope, through: [nut.o, {sheave: pulley.o, radius: 0.2, slip: none, side: over}, hung.o]}
   pair: {type: ratio, of: [spin, first], factors: [1, 2]}
 rolling:

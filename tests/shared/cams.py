@@ -64,3 +64,23 @@ couplings:
   cam: {{type: cam, of: [shaft, follow], lift: lift, at: f.C, contact: {CONTACTS[contact]}, two_sided: true}}
 analysis: {{duration: 0.05, samples: 4}}
 """
+
+
+def eccentric(rise: str, contact: str, rate: float = 20.0, more: str = "two_sided: true") -> str:
+    """A tappet of 0.5 kg that a disc lifts along y, turning about z at a constant rate from its lowest place."""
+    return f"""
+heun: 1
+gravity: [0, -9.81, 0]
+tables: {{lift: {rise}}}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  disc: {{mass: 2, center: [0, 0, 0], inertia: [0.01, 0.01, 0.02], points: {{O: [0, 0, 0]}}}}
+  tappet: {{mass: 0.5, center: [0, 0.1, 0], inertia: [1e-3, 1e-3, 1e-3], points: {{P: [0, 0, 0]}}}}
+joints:
+  shaft: {{type: pin, from: ground.O, to: disc.O, axis: [0, 0, 1]}}
+  guide: {{type: slide, from: ground.O, to: tappet.P, axis: [0, 1, 0]}}
+drives: {{motor: {{joint: shaft, angle: {rate}*t}}}}
+couplings:
+  cam: {{type: cam, of: [shaft, guide], lift: lift, at: tappet.P, contact: {contact}, {more}}}
+analysis: {{duration: {6.0 / rate}, samples: 13}}
+"""

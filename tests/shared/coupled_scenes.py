@@ -194,6 +194,20 @@ def curve(parts: Parts, name: str) -> None:
     }  # fmt: skip
 
 
+def tracks(parts: Parts, name: str) -> None:
+    """The same with another point on a path that is the first's, shifted by less than the points are apart."""
+    curve(parts, name)
+    del parts.scene["bodies"][name]["orientation"]
+    rng, joints = parts.rng, parts.scene["joints"]
+    first, apart = joints[f"j_{name}"], float(rng.uniform(0.5, 1.0)) * random_unit(rng)
+    shift = float(rng.uniform(0.4, 0.9)) * np.linalg.norm(apart) * random_unit(rng)
+    joints[f"j_{name}_2"] = {
+        "type": "curve", "from": {**first["from"], "at": (np.array(first["from"]["at"]) + shift).tolist()},
+        "to": {**first["to"], "at": (np.array(first["to"]["at"]) + apart).tolist()},
+        **{axis: f"{name}_{axis}" for axis in "xyz"},
+    }  # fmt: skip
+
+
 def wheel(parts: Parts, name: str) -> None:
     """One wheel or ball, on a plane of the ground or a carrier; what there is hangs on nothing of it."""
     if "rolling" in parts.scene:
@@ -213,8 +227,9 @@ ELEMENTS: dict[str, Callable[[Parts, str], None]] = {
     **{form: gears(form) for form in ("external", "internal", "bevel", "rack", "screw", "belt")},
     "threaded": threaded_cylinder, "ratio": ratio, "differential": differential, "rope": rope,
     "points": rope_through_points, "cv": constant_velocity, "cam": cam, "curve": curve, "wheel": wheel,
+    "tracks": tracks,
 }  # fmt: skip
-LAST = ("cam", "curve")  # Maker does not know where these are
+LAST = ("cam", "curve", "tracks")  # Maker does not know where these are
 
 
 def drawn(rng: np.random.Generator, kinds: tuple[str, ...]) -> Parts:

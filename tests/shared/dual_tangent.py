@@ -13,14 +13,14 @@ from tests.shared.dual_kernel import dual_module
 from tests.shared.duals import Dual, gradient_of
 
 
-def dual_tangent(layout: Layout, t: float, state: Array) -> tuple[Array, Array]:
-    """A state settled on the closures, and d(ydot)/dy there, (n, n); contacts open."""
+def dual_tangent(layout: Layout, t: float, state: Array, closed: float = 0.0) -> tuple[Array, Array]:
+    """A state settled on the closures, and d(ydot)/dy there, (n, n); contacts open, or closed (1)."""
     pack, n = layout.pack, len(state)
     programs = dual_module("expressions").Expressions(
         pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables
     )
     workspace = dual_module("workspace").Workspace(layout.tables, layout.indices, programs, numbers_of(layout))
-    workspace.hold([0.0] * len(layout.contacts))
+    workspace.hold([closed] * len(layout.contacts))
     workspace.start(0.0, layout.y0.tolist())
     scene, kernel, chosen = workspace.scene, dual_module("response"), dual_module("chosen")
     y: list[float] = np.asarray(state, dtype=float).tolist()

@@ -17,7 +17,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 
 BLOCKS = ("bodies", "points", "coordinates", "foundation", "joints", "stops", "sections", "forces", "energy",
-          "system_vector")  # fmt: skip
+          "system_vector", "couplings")  # fmt: skip
 ROUNDING = 1e-11  # of the largest of a kind, beside what both runs say of themselves
 # directions of what may be zero; the rest are functions of what is compared, of half turns beyond all bounds
 UNTOLD = ("axis", "line", "stress", "rodrigues")
@@ -87,7 +87,7 @@ def same(both: Pair) -> float:
         assert a.shape == b.shape, path
         assert np.array_equal(np.isnan(a), np.isnan(b)), f"{path}: open at other places"
         difference = float(np.nan_to_num(np.abs(a - b)).max(initial=0.0))
-        size = largest["total" if path.startswith("system_vector") else path.rsplit(".", 1)[-1]]
+        size = largest["total" if path.startswith("system_vector") else kind_of(path)]
         words = path.split(".")
         thin = slender.get(words[1], 1.0) if words[0] == "bodies" and words[-1] in ANGULAR else 1.0
         allowed = (estimate(both, path) * thin + ROUNDING * thin**2) * size
@@ -140,6 +140,12 @@ def known(both: Pair) -> int:
     return int(min(np.searchsorted(time, np.inf if h is None else h) for h in horizons))
 
 
+def kind_of(path: str) -> str:
+    """The last word of a path; a coupling's normal is a force."""
+    word = path.rsplit(".", 1)[-1]
+    return "force" if word == "normal" and path.startswith("couplings.") else word
+
+
 def sizes(study: Study, found: Mapping[str, Any]) -> dict[str, float]:
     """What numbers of each kind are measured in, by the last word of their path: the largest of the kind, or what the
     scene's length, forces and masses make of it where that is more.
@@ -147,7 +153,7 @@ def sizes(study: Study, found: Mapping[str, Any]) -> dict[str, float]:
     largest: dict[str, float] = {}
     for path, value in found.items():
         if numeric(np.atleast_1d(np.asarray(value, dtype=object)).tolist()):
-            kind = path.rsplit(".", 1)[-1]
+            kind = kind_of(path)
             own = float(np.nan_to_num(np.abs(np.asarray(value, dtype=float))).max(initial=0.0))
             largest[kind] = max(largest.get(kind, 0.0), own)
     scales = scales_of(study, largest)
@@ -191,13 +197,14 @@ ESTIMATED = {
     "joints": ("reactions", "drives"), "stops": ("reactions", "drives"),
     "foundation": ("foundation", "reactions", "drives"), "sections": ("sections",), "energy": ("energy", "motion"),
 }  # fmt: skip
-FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension")
-MOMENTS = ("moment", "T", "M1", "M2", "tilting", "moment_orbital", "moment_spin")
+FORCES = ("force", "N", "Q1", "Q2", "axial", "radial", "tension", "last_tension", "tight", "slack", "along", "aside",
+          "friction", "contact", "thrust")  # fmt: skip
+MOMENTS = ("moment", "torque", "T", "M1", "M2", "tilting", "moment_orbital", "moment_spin")
 ENERGIES = ("kinetic", "potential", "work", "energy")
 ALIKE = {kind: among for among in (FORCES, MOMENTS, ENERGIES) for kind in among}
 MEASURED: dict[str, tuple[str, ...]] = {  # by scales_of: all kinds that may be nothing but rounding
     **dict.fromkeys(FORCES, ("F",)), **dict.fromkeys(MOMENTS, ("FL",)), **dict.fromkeys(ENERGIES, ("FL",)),
-    **dict.fromkeys(("position", "center", "travel", "point", "about", "length"), ("L",)),
+    **dict.fromkeys(("position", "center", "travel", "point", "contact_point", "about", "length"), ("L",)),
     **dict.fromkeys(("velocity", "center_velocity", "speed", "center_velocity_jump"), ("v",)),
     **dict.fromkeys(("angular_velocity", "angular_velocity_jump"), ("w",)), "rate": ("v", "w"),
     "angle": ("1",), "rotation": ("1",), "normal": ("1",), "first_axis": ("1",),

@@ -311,7 +311,11 @@ def later(tree: Tree, by: float, state: Mapping[str, Mapping[str, Any]]) -> Tree
     if any(tree.get(block) for block in ("impulses", "stops", "latches")) or any(True for _ in _conditions(tree)):
         raise NotTold("what depends on the past")
     for _, joint in entries(tree, "joints"):
-        if joint.get("tension_only") or ("to_axis" in joint and joint.get("type") not in ("universal", "cv")):
+        if (
+            joint.get("tension_only")
+            or joint.get("one_sided")
+            or ("to_axis" in joint and joint.get("type") not in ("universal", "cv"))
+        ):
             raise NotTold("what depends on the start")
         joint.pop("initial", None)
     for _, drive in entries(tree, "drives"):

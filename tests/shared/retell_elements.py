@@ -87,11 +87,11 @@ def elements_in_units(tree: Tree, tell: Tell, mass: float, length: float, time: 
             table_in_units(tree, entry["lift"], 1.0, length)
     for entry in (tree.get("rolling") or {}).values():
         tell(entry, {"wheel": LENGTH, "on": LENGTH, "radius": LENGTH})
-    for joint in joints.values():
-        if joint.get("type") == "curve":
-            for axis in "xyz":
-                table_in_units(tree, joint.get(axis), length, length)
-            tell(joint, {"radius": LENGTH})
+    paths = [joint for joint in joints.values() if joint.get("type") == "curve"]
+    for joint in paths:
+        tell(joint, {"radius": LENGTH})
+    for table in dict.fromkeys(joint.get(axis) for joint in paths for axis in "xyz"):  # several may share one
+        table_in_units(tree, table, length, length)
     for load in (tree.get("forces") or {}).values():
         if load.get("type") == "motor":
             tell(load, {"limit": MOMENT})

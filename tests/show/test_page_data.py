@@ -114,7 +114,7 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
     scene, count = data["scene"], data["count"]
-    poses, machine = poses_of(study, unpacked(data["time"], count)), looks_of(study.spec)
+    poses, machine = poses_of(study, unpacked(data["time"], count)), looks_of(study.spec, study.setup.scene)
     half, center = np.array(scene["half"]), np.array(scene["center"])
     for body, look in zip(scene["bodies"], machine.bodies, strict=True):
         at = places(body["places"]).reshape(count, 3)
@@ -122,9 +122,9 @@ def test_the_poses_are_those_of_the_machine(file: Path) -> None:
         w, x, y, z = places(body["attitudes"]).reshape(count, 4).T
         first = np.stack([1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)], axis=1)
         np.testing.assert_allclose(first, poses.attitudes[look.name][:, :, 0], atol=1e-5)
-        clouds = [surface.corners for surface in look.surfaces] + list(look.lines)
+        clouds = [surface.corners for surface in look.surfaces] + list(look.strokes)
         drawn = [places(s["corners"]) if "corners" in s else None for s in body["surfaces"]]
-        drawn += [places(x) for x in body["lines"]]
+        drawn += [places(x) for x in (*body["bars"], *body["lines"])]
         for wanted, found in zip(clouds, drawn, strict=True):
             if found is not None:
                 np.testing.assert_allclose(found.reshape(-1, 3), wanted, rtol=1e-6, atol=PIXEL * scene["radius"])
@@ -136,10 +136,9 @@ def test_a_belts_strands_touch_both_pulleys() -> None:
     """A strand is as far from each axle as the belt's radius there, and stands on the ground, which carries both."""
     study, page = shown(SPECS / "belt_drive.yaml")
     (belt,) = (own for own in study.spec.couplings.values() if own.type == "belt")
-    strands = data_of(page)["scene"]["strands"]
-    assert [strand["body"] for strand in strands] == [-1, -1]
-    for strand in strands:
-        begin, end = places(strand["line"]).reshape(-1, 3)[:, :2]
+    (drawn,) = data_of(page)["scene"]["belts"]
+    assert drawn["body"] == -1
+    for begin, end in places(drawn["strands"]).reshape(2, 2, 3)[..., :2]:
         way = (end - begin) / np.linalg.norm(end - begin)
         for term, radius in zip(belt.terms, belt.radii, strict=True):
             x, y = np.array(study.spec.joints[term.joint].p)[:2] - begin
@@ -150,7 +149,7 @@ def test_a_belts_strands_touch_both_pulleys() -> None:
 def test_cuts_stand_where_the_results_say(file: Path) -> None:
     study, page = shown(file)
     data = data_of(page)
-    machine, poses = looks_of(study.spec), poses_of(study, study.results.time)
+    machine, poses = looks_of(study.spec, study.setup.scene), poses_of(study, study.results.time)
     for section in data["sections"]:
         block, name = study.results.sections[section["name"]], machine.bodies[section["body"]].name
         if study.spec.sections[section["name"]].reduce_to == "at":

@@ -91,14 +91,14 @@ def test_a_key_of_the_analysis_at_the_top_is_sent_there(key: str) -> None:
         ),
         ("forces: {f: {type: force, on: bar, vector: [0, 0, 1]}}", "forces.f.on [end]", "bar.top, or bar.end?"),
         (
-            "couplings: {c: {type: rope, through: [ground.O, bar.end], stiffness: 4e4}}",
-            "couplings.c.stiffness [unknown-key]",
-            "a spring: between two points",
+            "couplings: {c: {type: rope, through: [ground.O, bar.end], k: 4e4}}",
+            "couplings.c.k [unknown-key]",
+            "it is called stiffness here",
         ),
         (
-            "couplings: {c: {type: rope, through: [ground.O, bar.end], c: 300}}",
-            "couplings.c.c [unknown-key]",
-            "behind one of its ends",
+            "couplings: {c: {type: rope, through: [ground.O, bar.end], damping: 300}}",
+            "couplings.c.damping [rope-bounds]",
+            "stiffness: 4e5 N/m",
         ),
         (
             "forces: {f: {type: friction, joint: pivot, torque: 1, speed: 1, ramp: 0.2}}",

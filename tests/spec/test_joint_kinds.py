@@ -29,7 +29,8 @@ def test_keys(kind: Kind) -> None:
     keys |= {"to_axis"} if kind.to_axis != "never" else set()
     keys |= {"initial"} if kind.coordinates else set()
     keys |= {"length", "tension_only", "restitution"} if kind.keeps_distance else set()
-    keys |= {"x", "y", "z", "radius", "normal", "bearing"} if kind.follows_path else set()  # in place of an axis
+    own = {"x", "y", "z", "radius", "normal", "one_sided", "restitution", "bearing"}
+    keys |= own if kind.follows_path else set()  # in place of an axis
     keys |= {"bearing"} if kind.hold in (POINT, LINE) and kind.turn in (FREE, ABOUT_AXIS) else set()  # a journal turns
     assert set(keys_of(f.JOINTS[kind.name])) == keys
 
@@ -77,7 +78,7 @@ def test_what_is_not_held_in_the_plane_is_free(kind: Kind) -> None:
 @pytest.mark.parametrize("kind", TYPES.values(), ids=TYPES)
 def test_every_kind_has_its_forms_in_the_plane(kind: Kind) -> None:
     """With its axis along the normal and across it; without an axis one."""
-    assert (kind.name, True) in FLAT or kind.name == "curve"  # along which a scene is moved as it is given
+    assert (kind.name, True) in FLAT
     assert not kind.has_axis or (kind.name, False) in FLAT
 
 

@@ -54,6 +54,13 @@ def test_every_format_gives_the_solid(name: str) -> None:
     assert mesh.low == pytest.approx(RING.min(axis=(0, 1)), abs=1e-6)
 
 
+def test_all_solids_of_a_text_are_read_however_they_are_written() -> None:
+    small, capital = t.text_stl(UNIT), t.text_stl(UNIT + 2.0, "other").upper()
+    for written in (small + capital, capital + small, small + t.text_stl(UNIT + 2.0)):
+        mesh = mesh_of(written.encode(), "a.stl")
+        assert (mesh.shells, mesh.volume) == (2, pytest.approx(2.0))
+
+
 def test_faces_of_four_corners_and_numbers_counted_back() -> None:
     corners = [f"v {k & 1} {k >> 1 & 1} {k >> 2 & 1}" for k in range(8)]
     faces = [f"f {' '.join(str(k + 1) for k in face)}" for face in t.FACES]
@@ -222,3 +229,14 @@ def test_a_mesh_in_metres_of_the_size_of_a_house_is_warned_of(tmp_path: Path) ->
     for scale, codes in (("", ["mesh-size"]), (", scale: 1 mm", []), (", scale: 1", [])):
         (tmp_path / "a.yaml").write_text(text.replace(", density", f"{scale}, density"))
         assert [w.code for w in load(tmp_path / "a.yaml").warnings] == codes
+
+
+def test_a_mesh_without_a_mass_is_told_once(tmp_path: Path) -> None:
+    (tmp_path / "rod.stl").write_bytes(t.binary_stl(UNIT))
+    text = SCENE.replace("FILE", "rod.stl")
+    density = text[text.index(", density") : text.index("}", text.index(", density"))]
+    for given, code in (("", "shape-form"), (", density: 0", "not-positive"), (", mass: 0", "not-positive")):
+        (tmp_path / "a.yaml").write_text(text.replace(density, given))
+        with pytest.raises(SpecError) as caught:
+            load(tmp_path / "a.yaml")
+        assert [problem.code for problem in caught.value.problems] == [code]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import SpecError
+from heuncli.errors import SolveError, SpecError
 from heuncli.spec.load import load
+from tests.shared.scenes import near, solved
 
 SCENE = """heun: 1
 space: planar
@@ -28,3 +29,14 @@ def test_driven_lengths(length: str, code: str) -> None:
     with pytest.raises(SpecError) as found:
         load("rope.yaml", text)
     assert [problem.code for problem in found.value.problems] == [code]
+
+
+def test_a_taut_rope_whose_points_coincide_is_refused_and_a_slack_one_falls_into_it() -> None:
+    text = SCENE.replace("space: planar", "space: planar\ngravity: [0, -8]").replace("[0, -2]", "[0, 0]")
+    with pytest.raises(SolveError) as found:
+        solved(text.replace(", length: {}", "").format())
+    (problem,) = found.value.problems
+    assert (problem.code, problem.location and problem.location.path) == ("no-length", "couplings.r.through.1")
+    r = solved(text.format("1, tension_only: true, restitution: 0"))  # after half a second it is taut, and bears
+    near(r.bodies["a"]["position"][:, 1], [0.0, -1.0, -1.0], 1.0)
+    near(r.couplings["r"]["tension"], [0.0, 8.0, 8.0], 8.0)

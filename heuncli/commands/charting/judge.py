@@ -17,7 +17,6 @@ from heuncli.integration.check.estimate import recovered_at, recovered_together
 from heuncli.integration.check.runs import Runs
 from heuncli.integration.check.shared_blows import between_strikes
 from heuncli.integration.trajectory import Trajectory
-from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.records import record, replace
 from heuncli.results import Array, Mask
@@ -27,7 +26,7 @@ from heuncli.study.model.selection import Selection
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import APART, Weights
-from heuncli.study.solve.load_errors import LoadErrors
+from heuncli.study.solve.load_errors import LoadErrors, Quantity
 
 OF_LOADS = Selection(frozenset({"joints", "sections"}))
 Certain = Mapping[str, tuple[Mask, Mask]]  # by joint: which components of its force and moment are never open
@@ -46,7 +45,7 @@ class CertainLoadErrors(LoadErrors):
         """Terms are the reference's: beside those of a run that is lost its own loads would count as rounding."""
         super().take(name, values, rounding, np.repeat(terms[0::2], 2), more)
 
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
         """Those of the joints of which something is certain; of couplings where nothing is open."""
         kept = []
         for load in joints:

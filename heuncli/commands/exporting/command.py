@@ -17,7 +17,6 @@ from heuncli.decks.naming import DeckNames, DeckNodes, unfit_set
 from heuncli.decks.registry import DECKS
 from heuncli.errors import Finding, Problem
 from heuncli.load_cases import unit_systems
-from heuncli.load_cases.asked import AskedInstant, measures, parse
 from heuncli.load_cases.gathered import gathered, needed_for
 from heuncli.load_cases.model import LoadCases
 from heuncli.load_cases.unit_systems import in_units
@@ -32,6 +31,7 @@ from heuncli.study.model.error_places import placed
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
+from heuncli.telling.asked_instants import AskedInstant, measures, parse
 from heuncli.telling.asked_values import positive
 
 if TYPE_CHECKING:

@@ -23,6 +23,7 @@ from heuncli.joint_kinds import RATES
 from heuncli.kinetostatics.actions import Action, applied_loads
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
+from heuncli.kinetostatics.couplings import coupling_loads, rope_actions
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.shares import GRAVITY
 from heuncli.mechanism.model import GROUND
@@ -184,6 +185,9 @@ def along(scene: FreedScene, there: Recovered, span: float, t: float, rate: floa
     for load in applied_loads(layout.mechanism, own, loaded):
         forces[load.load.name] = forces.get(load.load.name, 0.0) + power(states, load.action)
         reach = max(reach, largest_power(speeds, load.action))
+    for action in rope_actions(coupling_loads(layout, loaded, own)):
+        forces[action.name] = forces.get(action.name, 0.0) + power(states, action)
+        reach = max(reach, largest_power(speeds, action))
     return InertiaCourse("", "", False, 0.0, values, rate, epsilon, half, forces, reach)
 
 

@@ -27,7 +27,7 @@ from heuncli.joint_kinds import JOINTS, RATES
 from heuncli.kinetostatics.actions import applied_loads
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.mechanism.model import JointLoad, Load, PointLoad
+from heuncli.mechanism.model import JointLoad, Load, PointLoad, RopeLoad
 from heuncli.nearest import did_you_mean
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -206,7 +206,9 @@ def drive_name(at: Instant, coordinate: str) -> str:
 
 def has_value(load: Load) -> bool:
     """Whether a load is told by values."""
-    return bool(load.values) and not (isinstance(load, PointLoad) and load.spread is not None)
+    return bool(load.values) and not (
+        isinstance(load, RopeLoad) or (isinstance(load, PointLoad) and load.spread is not None)
+    )
 
 
 def direction(load: PointLoad) -> Array | None:

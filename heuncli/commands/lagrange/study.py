@@ -24,15 +24,16 @@ from heuncli.commands.lagrange.section_forces import section_forces
 from heuncli.commands.lagrange.seen import seen
 from heuncli.commands.lagrange.state_space import state_space
 from heuncli.joint_kinds import is_length
-from heuncli.kinetostatics.actions import applied_loads, whole_joint_actions
+from heuncli.kinetostatics.actions import Action, applied_loads, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coordinates import coordinates
-from heuncli.kinetostatics.couplings import coupling_actions
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.compose.blocks import blocks as blocks_of
 from heuncli.study.model.error_places import placed
+from heuncli.tree.layout import Layout
 
 QUASI = (
     "{names}: rates without coordinates, components of angular velocity and of velocity along the world's axes: "
@@ -73,15 +74,9 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
     terms = VelocityTerms(at.freed, by, partials, epsilon, at.t, at.state, at.holding)
     C = terms.at(q1[None, :])[0]
     here = body_states(layout, at.here)
-    # as they act with the drives: friction hangs on what the joint carries then
-    applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
+    applied = applied_in(layout, at, states)
     k = forces_by_cause(layout, partials, applied)
-    scale = size_of_terms(
-        layout,
-        partials,
-        [*applied, *whole_joint_actions(at.recovery.unsplit), *coupling_actions(at.recovery.couplings)],
-        states,
-    )
+    scale = size_of_terms(layout, partials, [*applied, *holding(at)], states)
     scale = scale + np.abs(epsilon) @ np.abs(q2) + np.abs(C)
     total = sum(k.values(), np.zeros(len(q1)))
     drives = drive_rows(at, by)
@@ -120,6 +115,18 @@ def told(spec: Spec, at: Instant, asked: LagrangeQuestion) -> LagrangeResults:
         state_space=linear,
         blows=blows(spec, at, drives, by, partials, epsilon, eta),
     )
+
+
+def applied_in(layout: Layout, at: Instant, states: BodyStates) -> list[Action]:
+    """What acts by laws, as it does with the drives: friction hangs on what the joint carries then."""
+    applied = [load.action for load in applied_loads(layout.mechanism, states, at.there)]
+    return applied + rope_actions(coupling_loads(layout, at.there, states))
+
+
+def holding(at: Instant) -> list[Action]:
+    """What joints and couplings exert by what they hold."""
+    held = [own for own in at.recovery.couplings if own.coupling.stretched is None]
+    return [*whole_joint_actions(at.recovery.unsplit), *coupling_actions(held)]
 
 
 def symmetric(M: Array) -> Array:

@@ -50,7 +50,7 @@ class PlotRequest(NamedTuple):
             "FILE:X:Y",
         ),
     ] = ()
-    at: Annotated[str | None, Option(("--at",), "At these instants: of diagrams and scenes.", "T,...")] = None
+    at: Annotated[str | None, Option(("--at",), "When, of diagrams and scenes; as of heun export.", "WHEN,...")] = None
     axes: Annotated[
         str | None, Option(("--axes",), "Joint loads in the axes of the one or the other body.", "world|from|to")
     ] = None

@@ -6,7 +6,7 @@ from heuncli.cli.units import units
 from heuncli.cli.views import require_view
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import instants_before_horizon, solution, specs_of
+from heuncli.commands.plot.sources import extremes_asked, instants_before_horizon, solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.pictures.courses import title_of
 from heuncli.pictures.scenes import scene
@@ -25,7 +25,8 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     specs = specs_of(asked.files, request)
     for _, spec in specs:
         measure.check([MeasureRequest("", path) for path in paths], spec, "heun plot")
-    sources = [solution(name, spec, [*paths, *REPORTS], request) for name, spec in specs]
+    needed = [*paths, *REPORTS]
+    sources = [solution(name, spec, [*needed, *extremes_asked(request.at, spec)], request) for name, spec in specs]
     shown = units(request.units)
     ats = [None if request.at is None else instants_before_horizon(source, request.at) for source in sources]
     figures = [scene(source, shown, at, request.view, names) for source, at in zip(sources, ats, strict=True)]

@@ -8,7 +8,7 @@ from heuncli.cli.entry import UsageError
 from heuncli.cli.units import units
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import instants_before_horizon, solution, specs_of
+from heuncli.commands.plot.sources import extremes_asked, instants_before_horizon, solution, specs_of
 from heuncli.drawing.figure import Figure
 from heuncli.errors import Problem, SpecError
 from heuncli.nearest import nearest
@@ -26,7 +26,8 @@ def draw(asked: PlotAsked, request: PlotRequest) -> Figure:
     for _, spec in specs:
         _require_runs(names, spec)
     _require_one_kind([spec for _, spec in specs])
-    sources = [solution(name, spec, _needed(names, spec), request) for name, spec in specs]
+    needed = [[*_needed(names, spec), *extremes_asked(request.at, spec)] for _, spec in specs]
+    sources = [solution(name, spec, paths, request) for (name, spec), paths in zip(specs, needed, strict=True)]
     return diagrams(sources, names, units(request.units), _asked_instants(sources, request.at), request.tension_side)
 
 

@@ -8,7 +8,7 @@ from pathlib import PurePath
 from heuncli.cli import alarm
 from heuncli.cli.entry import UsageError
 from heuncli.cli.guard import require_other_file
-from heuncli.cli.solving import choice, instants, overrides, require_cases, solver_options, warn
+from heuncli.cli.solving import choice, overrides, require_cases, solver_options, warn
 from heuncli.commands.plot.asked import PlotAsked
 from heuncli.commands.plot.request import PlotRequest
 from heuncli.errors import Problem
@@ -24,6 +24,8 @@ from heuncli.spec.reading import STANDARD_INPUT
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.selection import asked_by
 from heuncli.study.workflow import solve
+from heuncli.telling import measure
+from heuncli.telling.asked_instants import measures, parse, times_of
 
 
 def specs_of(files: Sequence[str], request: PlotRequest) -> list[tuple[str, Spec]]:
@@ -58,14 +60,20 @@ def _specs(file: str, name: str, request: PlotRequest) -> Iterator[tuple[str, Sp
 
 def instants_before_horizon(source: Pictured, words: str) -> Array:
     """The instants of --at in a run, (n,) ascending. Raises UsageError, of those from the horizon on, too."""
-    results = source.study.results
-    found = instants(words, results.time)
-    horizon = results.horizon
+    found = times_of(parse(words), source.study)
+    horizon = source.study.results.horizon
     if horizon is not None and found[-1] >= horizon:
         late = found[found >= horizon][0]
         message = f"--at {late:.6g}: from t = {horizon:.6g} s on nothing is claimed, and so nothing is drawn"
         raise UsageError(Problem("bad-option", message, hint="an earlier instant"))
     return found
+
+
+def extremes_asked(words: str | None, spec: Spec) -> list[str]:
+    """The paths of a spec at whose extremes `--at` asks for a picture. Raises UsageError, SpecError."""
+    several = measures(parse(words)) if words is not None else []
+    measure.check(several, spec, "--at")
+    return [one.path for one in several]
 
 
 def require_joints(paths: Sequence[str], request: PlotRequest) -> None:

@@ -54,7 +54,9 @@ class RunRequest(NamedTuple):
             completes="case",
         ),
     ] = None
-    at: Annotated[str | None, Option(("--at",), "Show these instants instead of the extremes.", "T,...")] = None
+    at: Annotated[
+        str | None, Option(("--at",), "Show these instants instead of the extremes; first, last.", "WHEN,...")
+    ] = None
     all: Annotated[bool, Option(("--all",), "Show every instant, and every cut of a run of cuts.")] = False
     measure: Annotated[
         tuple[str, ...],

@@ -81,13 +81,13 @@ def leave(task: RunTask, spec: Spec, study: Study, place: str = "heun") -> int:
 def _export(request: RunRequest, form: str, study: Study, labels: Labels) -> Iterator[str]:
     from heuncli.report.export import csv_pieces, json_pieces  # tables do without
 
-    at = instants(request.at, study.results.time) if request.at is not None else None
+    at = instants(request.at, study) if request.at is not None else None
     shown = study.results if at is None else study.resample(at)
     return json_pieces(shown) if form == "json" else csv_pieces(shown, labels)
 
 
 def _report(request: RunRequest, form: str, study: Study, labels: Labels, what: Selection, *, details: bool) -> str:
-    at = instants(request.at, study.results.time) if request.at is not None else None
+    at = instants(request.at, study) if request.at is not None else None
     tables = tables_of(study, labels, TablesAsked(what, at, request.all, details))
     return _headed(request, form, study, tables)
 

@@ -23,4 +23,4 @@ def moving_glb(study: Study) -> bytes:
         if turned > tolerances.TORN:
             study.later_warnings[TOLD.format(math.degrees(turned))] = None
     poses = poses_of(study, times)
-    return binary(looks_of(study.spec), poses, up_of(study.spec, poses))
+    return binary(looks_of(study.spec, study.setup.scene), poses, up_of(study.spec, poses))

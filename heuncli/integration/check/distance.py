@@ -93,10 +93,11 @@ def angles_apart(layout: Layout, several: Recovered, count: int, first: int = 0)
     several: answers of so many runs, instant by instant; first: the number of the one.
     """
     turning = [n for n, freedom in enumerate(layout.freedoms) if freedom.quantity == "angle"]
-    if not turning and not layout.counters:
+    counted = [place for k, place in layout.counters.items() if layout.mechanism.joints[k].path is None]
+    if not turning and not counted:
         n = len(several.times) // count
         return np.zeros(n), np.ones(n)
-    angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, list(layout.counters.values())]])
+    angles = np.hstack([several.freedoms["q"][:, turning], several.states[:, counted]])
     own = angles[first::count]
     others = range(first + 1, count)
     apart = np.max([np.abs(own - angles[k::count]).max(axis=1, initial=0.0) for k in others], axis=0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -11,9 +11,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem
 from heuncli.expressions.programs import KNOT, LOADS, TABLE, Expression, TableFunction, outside
+from heuncli.integration.diagnosis.ways import Moving, along_cut_paths, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.named_points import motion_of
-from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad
+from heuncli.mechanism.model import GROUND, BushingLoad, Load, Mechanism, PairLoad, RopeLoad
 from heuncli.number_range import out_of_range
 from heuncli.records import replace
 from heuncli.results import Array
@@ -26,8 +27,6 @@ NEAREST, FARTHEST = 52, 20
 HELD = 1  # a table's kind (expressions/programs.py)
 DERIVATIVES = ("value", "rate", "acceleration")
 
-Moving = Mapping[tuple[str, str], tuple[float, float]]  # a joint's coordinate or a point's, and its rate of change
-
 
 def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving:
     """The coordinates of the joints, and of the points that expressions name, at one of the instants."""
@@ -39,6 +38,7 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
             name = joints[freedom.joint].name
             coordinates[name, freedom.quantity] = q, u
             coordinates[name, "rate" if freedom.quantity == "angle" else "speed"] = u, a if math.isfinite(a) else 0.0
+    coordinates |= along_cut_paths(layout, recovered.states[instant], recovered.bodies[instant])
     for name, point in layout.mechanism.points.items():
         jets = motion_of(layout, point, recovered.bodies[instant : instant + 1])[0]
         coordinates |= {(name, quantity): (x, rate) for quantity, (x, rate, _) in jets.items()}
@@ -52,7 +52,7 @@ def coordinates_at(layout: Layout, recovered: Recovered, instant: int) -> Moving
 def acted_between(load: Load, rows: np.ndarray[Any, Any]) -> Moving:
     """What a load acts between, as its own law may name it; of rates of rates nothing is known."""
     name = f"{LOADS}.{load.name}"
-    if isinstance(load, PairLoad):
+    if isinstance(load, PairLoad | RopeLoad):
         length, rate = float(rows["span"][0]), float(rows["rate"][0])
         return {(name, "length"): (length, rate), (name, "speed"): (rate, 0.0)}
     return {}
@@ -96,7 +96,7 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
     """
     scale = max(abs(t), length)
     beyond = scale * 2.0**-FARTHEST
-    if problems := paths_left(mechanism, t, beyond, coordinates) + lifts_left(mechanism, t, beyond, coordinates):
+    if problems := ways_left(mechanism, t, beyond, coordinates):
         return problems
     for beyond in (0.0, *(scale * 2.0**-k for k in range(NEAREST, FARTHEST - 1, -1))):
         problems = [
@@ -114,42 +114,6 @@ def without_value(mechanism: Mechanism, t: float, length: float, coordinates: Mo
         > tolerances.BOUNDLESS * abs(expression.value(t + back, _values(expression, back, coordinates)))
         > 0.0
     ]
-
-
-def paths_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
-    """The joints whose points are at the end of their paths at t, or by their rates just beyond it."""
-    problems = []
-    for joint in mechanism.joints:
-        path = joint.path
-        s, u = coordinates.get((joint.name, "travel"), (math.nan, 0.0))
-        if path is None or path.period or path.first <= s + beyond * u <= path.last:
-            continue
-        message = f"at t = {t:.9g} s the point of joint {joint.name} runs off its path, which covers travel from "
-        message += f"{path.first:.9g} to {path.last:.9g} m"
-        end = f"> {path.last:.6g}" if s > 0.5 * (path.first + path.last) else f"< {path.first:.6g}"
-        hint = f"a longer path, or end the run before: until: {joint.name}.travel {end}"
-        problems.append(Problem("path-ends", message, None, hint, f"joints.{joint.name}"))
-    return problems
-
-
-def lifts_left(mechanism: Mechanism, t: float, beyond: float, coordinates: Moving) -> list[Problem]:
-    """The cams whose discs are at the end of their lifts at t, or by their rates just beyond it."""
-    problems = []
-    for coupling in mechanism.couplings:
-        shape = coupling.rows[0].parts[0].cam if coupling.rows else None
-        if shape is None or shape.lift.period:
-            continue
-        lift, shaft = shape.lift, mechanism.joints[coupling.rows[0].parts[0].coordinates[0].joint].name
-        angle, rate = coordinates.get((shaft, "angle"), (math.nan, 0.0))
-        if math.isnan(angle) or lift.first <= angle + beyond * rate <= lift.last:
-            continue
-        first, last = math.degrees(lift.first), math.degrees(lift.last)
-        message = f"at t = {t:.9g} s the disc of cam {coupling.name} turns off its lift, which covers {shaft}.angle "
-        message += f"from {first:.9g} to {last:.9g} deg"
-        end = f"> {last:.6g}" if angle > 0.5 * (lift.first + lift.last) else f"< {first:.6g}"
-        hint = f"a longer lift, or one with a period, or end the run before: until: {shaft}.angle {end} deg"
-        problems.append(Problem("path-ends", message, None, hint, f"couplings.{coupling.name}"))
-    return problems
 
 
 def grown(mechanism: Mechanism, now: tuple[float, Moving], before: tuple[float, Moving]) -> list[Problem]:

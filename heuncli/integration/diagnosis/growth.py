@@ -11,7 +11,7 @@ from heuncli import tolerances
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
 from heuncli.integration.diagnosis.domains import coordinates_at, grown
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import Mechanism, path_of_load
 from heuncli.results import Array
 
 
@@ -36,6 +36,8 @@ def stalled(problems: Sequence[Problem], done: str, projected: float) -> HeunErr
 def largest_load(mechanism: Mechanism, recovered: Recovered) -> str:
     """The largest load at the first instant, in words; empty where there is none."""
     rows = recovered.loads[0]
-    named = [(float(np.abs(rows["value"][k]).max(initial=0.0)), load.name) for load, k in mechanism.load_rows()]
+    named = [
+        (float(np.abs(rows["value"][k]).max(initial=0.0)), path_of_load(load)) for load, k in mechanism.load_rows()
+    ]
     finite = [(value, name) for value, name in named if 0.0 < value < math.inf]
-    return "the largest load is forces.{1}, {0:.3g}".format(*max(finite)) if finite else ""
+    return "the largest load is {1}, {0:.3g}".format(*max(finite)) if finite else ""

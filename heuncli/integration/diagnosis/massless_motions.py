@@ -16,7 +16,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.kernel.choose import scene as kernel
-from heuncli.mechanism.model import GROUND, PointLoad
+from heuncli.mechanism.model import GROUND, PointLoad, RopeLoad
 from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.idle_spins import without_inertia
@@ -112,6 +112,10 @@ def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
         return False
     power, scale = np.zeros(free.count), 0.0
     for load, rows in scene.mechanism.load_rows():
+        if isinstance(load, RopeLoad):
+            pulled, size = pulled_along(scene, recovered, k, load, free, at)
+            power, scale = power + pulled, scale + size
+            continue
         for row, answer in zip(layout.tables["loads"][rows], recovered.loads[k, rows], strict=True):
             F, M = answer["force"], answer["moment"]
             ends = [(row["b"], answer["at"], 1.0), (row["a"], answer["from_at"], -1.0)]
@@ -120,6 +124,23 @@ def is_idle(scene: PreparedScene, recovered: Recovered, k: int) -> bool:
                 power += sign * (F @ v * layout.size + M @ omega)
             scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
     return bool(np.all(np.abs(power) <= tolerances.NO_MOMENT * scale))
+
+
+def pulled_along(
+    scene: PreparedScene, recovered: Recovered, k: int, load: RopeLoad, free: Massless, at: TreePoses
+) -> tuple[Array, float]:
+    """What a rope that stretches does along the motions at an instant, (count,), and of what size its loads are."""
+    layout, row = scene.layout, scene.mechanism.row_of_rope(load.name)
+    first, value = int(layout.tables["loads"][row]["part"]), float(recovered.loads["value"][k, row])
+    power, scale = np.zeros(free.count), 0.0
+    for own in range(first, first + len(load.parts)):
+        ends, answer = layout.tables["parts"][own], recovered.parts[k, own]
+        F, M = value * answer["f"], value * answer["m"]
+        for body, sign in ((int(ends["b"]), 1.0), (int(ends["a"]), -1.0)):
+            omega, v = free.of(body, answer["Q"], at, layout.size)
+            power += sign * (F @ v * layout.size + M @ omega)
+        scale += float(np.sqrt(F @ F)) * layout.size + float(np.sqrt(M @ M))
+    return power, scale
 
 
 def holds_still(scene: PreparedScene, free: Massless, at: TreePoses) -> bool:

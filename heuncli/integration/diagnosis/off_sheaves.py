@@ -68,6 +68,11 @@ def rope_parts(layout: Layout, recovered: Recovered) -> Iterator[tuple[Coupling,
     for owner, coupling in enumerate(mechanism.couplings, len(mechanism.joints)):
         if coupling.given.type != "rope":
             continue
+        if coupling.stretched is not None:
+            load = mechanism.row_of_rope(coupling.name)
+            taut = recovered.loads["value"][:, load] < 0.0
+            for k, part in enumerate(coupling.stretched.parts, int(layout.tables["loads"][load]["part"])):
+                yield coupling, part, k, taut
         rows = [r for r, k in enumerate(layout.rows) if k == owner]
         for r, row in zip(rows, coupling.rows, strict=True):
             first = int(layout.tables["closures"][r]["part"])

@@ -7,7 +7,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import BushingLoad, PairLoad
+from heuncli.mechanism.model import BushingLoad, PairLoad, path_of_load
 from heuncli.number_range import out_of_range
 from heuncli.records import record
 from heuncli.results import Array
@@ -91,7 +91,7 @@ def too_large(scene: PreparedScene, recovered: Recovered, instant: int) -> list[
     values = [(float(sizes[rows].max()), load) for load, rows in mechanism.load_rows()]
     value, load = max(values, key=lambda pair: pair[0], default=(0.0, None))
     if load is not None and value > tolerances.MOST_MAGNITUDE:
-        what = f"at t = {t:.9g} s the value of forces.{load.name}"
+        what = f"at t = {t:.9g} s the value of {path_of_load(load)}"
     else:
         bodies = recovered.bodies[instant]
         largest = {name: np.abs(bodies[name]).max(axis=-1) for name in QUANTITIES}

@@ -8,16 +8,10 @@ import numpy as np
 
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
-from heuncli.integration.diagnosis.domains import (
-    FARTHEST,
-    Moving,
-    coordinates_at,
-    lifts_left,
-    paths_left,
-    without_value,
-)
+from heuncli.integration.diagnosis.domains import FARTHEST, coordinates_at, without_value
 from heuncli.integration.diagnosis.growth import growing, largest_load
 from heuncli.integration.diagnosis.jamming import jammed_beyond
+from heuncli.integration.diagnosis.ways import Moving, ways_left
 from heuncli.integration.evaluator import Recovered
 from heuncli.integration.run.errors import TROUBLE, ClosuresLost
 from heuncli.integration.run.kernel_loop import CHATTERING, HALF_TURN
@@ -72,8 +66,7 @@ def ways_ended(ended: Ended) -> list[Problem]:
     on_cams = any(coupling.given.type == "cam" for coupling in mechanism.couplings)
     if not on_cams and all(joint.path is None for joint in mechanism.joints):
         return []
-    there = mechanism, ended.t, ended.progress.last * 2.0**-FARTHEST, ended.coordinates
-    return paths_left(*there) + lifts_left(*there)
+    return ways_left(mechanism, ended.t, ended.progress.last * 2.0**-FARTHEST, ended.coordinates)
 
 
 def loads_ended(ended: Ended) -> list[Problem]:

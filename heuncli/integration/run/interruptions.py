@@ -160,13 +160,20 @@ def ends_pushed(layout: Layout, r: int, owner: int) -> bool:
     mechanism = layout.mechanism
     if owner < len(mechanism.joints):
         joint = mechanism.joints[owner]
-        return joint.tension_only and joint.restitution is None
+        return joint.opens and joint.restitution is None and r == layout.rows.index(owner)
     row = mechanism.couplings[owner - len(mechanism.joints)].rows[r - layout.rows.index(owner)]
     return row.tension_only and row.restitution is None
 
 
 def require_pull(mechanism: Mechanism, rope: str | None) -> None:
-    """Raise SolveError for a rope, of a joint or a coupling, or a cam's follower that lifts in a blow at the start."""
+    """Raise SolveError for what would have to push in a blow at the start: a rope, of a joint or a coupling.
+
+    Or a cam's follower that lifts, or a path that would have to pull.
+    """
+    if rope in {joint.name for joint in mechanism.joints if joint.one_sided}:
+        message = f"in the blow at t = 0 s the path of joint {rope} would have to pull (one_sided)"
+        hint = "with restitution: 0 (to 1) its point flies off, and strikes again"
+        raise SolveError(Problem("rope-pushes", message, hint=hint, about=f"joints.{rope}"))
     if rope is not None:
         kind = {coupling.name: coupling.given.type for coupling in mechanism.couplings}.get(rope)
         lost = f"the {kind or 'rod'} {rope} would have to push (tension_only)"

@@ -161,6 +161,7 @@ def require_smooth(layout: Layout, method: Method, last: float) -> None:
     mechanism = layout.mechanism
     named = [f"the stop {stop.name}" for stop in mechanism.stops]
     named += [f"the rope {joint.name}, which may go slack" for joint in mechanism.joints if joint.tension_only]
+    named += [f"the curve {joint.name}, which may lift off" for joint in mechanism.joints if joint.one_sided]
     named += [f"the impulse {blow.name}" for blow in mechanism.blows]
     whens = [blow.when for blow in mechanism.blows]
     named += [f"the condition {condition.name}" for condition in mechanism.conditions if condition not in whens]

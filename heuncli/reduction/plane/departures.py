@@ -15,31 +15,27 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.expressions.programs import Expression
 from heuncli.joint_kinds import ABOUT_AXIS, JOINTS, NOT_AT_ALL
-from heuncli.mechanism.model import BushingLoad, Joint, PairLoad, PointLoad, ThreadLoad
-from heuncli.records import record
+from heuncli.mechanism.model import BushingLoad, Joint, JointLoad, PairLoad, PointLoad, ThreadLoad
+from heuncli.reduction.plane.departure import Departure, beside
 from heuncli.reduction.plane.view import View
 from heuncli.results import Array
-
-
-@record
-class Departure:
-    """What leaves the plane, in words, and by how much, of the largest it could; acts: it is a load, blow or drive."""
-
-    what: str
-    size: float
-    acts: bool = False
 
 
 def departures(seen: View) -> Iterator[Departure]:
     """All that leaves the plane."""
     yield from _joints(seen)
-    if not all(seen.upright):
-        height = _height(seen)
+    yield from _paths(seen)
+    height = None if all(seen.upright) else _height(seen)
+    if height is not None:
         yield from _bodies(seen, height)
         yield from _held_in_plane(seen, height)
         yield from _loads(seen, height)
         yield from _blows(seen, height)
     yield from _still(seen)
+    if seen.scene.mechanism.couplings:
+        from heuncli.reduction.plane.coupled import leaving  # few scenes have them
+
+        yield from leaving(seen, height)
 
 
 def _height(seen: View) -> float:
@@ -50,12 +46,6 @@ def _height(seen: View) -> float:
     for joint in mechanism.joints:
         heights += [seen.height(b, p) for b, p in ((joint.a, joint.p), (joint.b, joint.q)) if not seen.stays(b)]
     return sorted(heights)[len(heights) // 2]
-
-
-def _beside(seen: View, height: float, body: int, point: Array, what: str) -> Iterator[Departure]:
-    off = abs(seen.height(body, point) - height)
-    if off > tolerances.FLAT * seen.reach:
-        yield Departure(f"{what} lies {off:.1g} m beside it", off / seen.reach)
 
 
 def _vector(what: str, off: float, size: float, unit: str, acts: bool = False) -> Iterator[Departure]:
@@ -71,6 +61,19 @@ def _joints(seen: View) -> Iterator[Departure]:
         yield from _vector(f"joints.{joint.name}.{key}", stance.off, 1.0, "(sine)")
 
 
+def _paths(seen: View) -> Iterator[Departure]:
+    """Paths that rise out of the plane, and rollers that run beside them out of it."""
+    for joint in seen.scene.mechanism.joints:
+        if joint.path is None:
+            continue
+        n = seen.normal_in(joint.a)
+        rise = float(np.ptp(joint.path.track(joint.path.looked_at)[0] @ n))
+        yield from _vector(f"the path of joints.{joint.name}", rise, seen.reach, "m")
+        if joint.path.radius:
+            off = joint.path.normal - (joint.path.normal @ n) * n
+            yield from _vector(f"joints.{joint.name}.normal", float(np.sqrt(off @ off)), 1.0, "(sine)")
+
+
 def _bodies(seen: View, height: float) -> Iterator[Departure]:
     """Gravity; centres, inertia and velocities of the bodies that are not upright."""
     mechanism, start, n = seen.scene.mechanism, seen.scene.start, seen.n
@@ -84,7 +87,7 @@ def _bodies(seen: View, height: float) -> Iterator[Departure]:
         if seen.upright[i]:
             continue
         name = f"bodies.{body.name}"
-        yield from _beside(seen, height, i, body.center, f"{name}.center")
+        yield from beside(seen, height, i, body.center, f"{name}.center")
         J, own = body.inertia + lent.get(i, 0.0), seen.normal_in(i)
         across = J @ own - (own @ J @ own) * own
         yield from _vector(f"{name}: its inertia", float(np.sqrt(across @ across)), float(np.trace(J)), "kg m^2")
@@ -99,8 +102,9 @@ def _held_in_plane(seen: View, height: float) -> Iterator[Departure]:
         turn = JOINTS[joint.kind].turn
         common = turn is NOT_AT_ALL or (turn is ABOUT_AXIS and stance.along)  # both bodies tilt as one
         if not common and not _all_stay(seen, joint):
-            for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
-                yield from _beside(seen, height, end, point, f"the point of joints.{joint.name}")
+            ends = ((joint.a, joint.p), (joint.b, joint.q))
+            for end, point in ends if joint.path is None else ends[1:]:  # a path is where what runs along it is
+                yield from beside(seen, height, end, point, f"the point of joints.{joint.name}")
 
 
 def _all_stay(seen: View, joint: Joint) -> bool:
@@ -116,17 +120,19 @@ def _loads(seen: View, height: float) -> Iterator[Departure]:
             if seen.stays(load.body):
                 continue
             if load.kind == "force" and load.point is not None:
-                yield from _beside(seen, height, load.body, load.point, f"the point of {name}")
+                yield from beside(seen, height, load.body, load.point, f"the point of {name}")
             n = seen.normal_in(load.body, load.in_body)
             yield from _in_time(f"{name}.vector", load.vector, n, load.kind)
         elif isinstance(load, PairLoad):
             if load.a != load.b and not (seen.stays(load.a) and seen.stays(load.b)):
                 for end, point in load.points:
-                    yield from _beside(seen, height, end, point, f"a point of {name}")
+                    yield from beside(seen, height, end, point, f"a point of {name}")
         elif isinstance(load, BushingLoad):
             yield from _bushing(seen, load, height)
         elif isinstance(load, ThreadLoad):
             yield Departure(f"couplings.{load.name} rubs along its axis", 1.0, True)
+        elif not isinstance(load, JointLoad):
+            yield Departure(f"couplings.{load.name} may run out of it", 1.0, True)
         elif load.kind == "turn_spring":
             if not seen.stances[load.joint].winds and not _all_stay(seen, mechanism.joints[load.joint]):
                 yield Departure(f"{name} turns about an axis in it", 1.0, True)
@@ -143,7 +149,7 @@ def _bushing(seen: View, load: BushingLoad, height: float) -> Iterator[Departure
         return
     name = f"forces.{load.name}"
     for end, point in load.points:
-        yield from _beside(seen, height, end, point, f"a point of {name}")
+        yield from beside(seen, height, end, point, f"a point of {name}")
     along = [F.T @ seen.normal_in(end) for end, F in ((load.a, load.frame), (load.b, load.to_frame))]
     k = int(np.argmax(np.abs(along[0])))
     askew = float(np.abs(along[0] - along[1]).max() + np.abs(np.delete(along[0], k)).max())
@@ -174,7 +180,7 @@ def _blows(seen: View, height: float) -> Iterator[Departure]:
             continue
         name = f"impulses.{blow.name}"
         if blow.kind == "impulse" and blow.point is not None:
-            yield from _beside(seen, height, blow.body, blow.point, f"the point of {name}")
+            yield from beside(seen, height, blow.body, blow.point, f"the point of {name}")
         n, h = seen.normal_in(blow.body, blow.in_body), blow.vector
         leaving = (h @ n) * n if blow.kind == "impulse" else h - (h @ n) * n
         off = float(np.sqrt(leaving @ leaving))

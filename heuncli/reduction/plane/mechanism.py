@@ -12,9 +12,11 @@ import math
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.paths import Path
 from heuncli.expressions.programs import Expression
 from heuncli.expressions.sums import weighted_sum
 from heuncli.joint_kinds import JOINTS
+from heuncli.mechanism.couplings import Coupling
 from heuncli.mechanism.model import (
     GROUND,
     Assembly,
@@ -28,7 +30,6 @@ from heuncli.mechanism.model import (
     NamedPoint,
     PairLoad,
     PointLoad,
-    ThreadLoad,
 )
 from heuncli.records import record, replace
 from heuncli.reduction.plane.view import View
@@ -39,7 +40,7 @@ from heuncli.tree.pack import lay_out_like
 from heuncli.tree.prepare import PreparedScene
 from heuncli.tree.starts import JointStart, pose
 
-Z = np.array([0.0, 0.0, 1.0])
+X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 ZERO = Expression.of(0.0)
 
 
@@ -119,14 +120,21 @@ class Flat:
     def joint(self, k: int) -> Joint:
         """Joint k, of the kind that it is in the plane."""
         joint, stance = self.scene.mechanism.joints[k], self.seen.stances[k]
-        kind = JOINTS[joint.kind]
-        if stance.along:
+        kind, path = JOINTS[joint.kind], None
+        if joint.path is not None:
+            axis, path = X, self.path(joint.a, joint.path)
+        elif stance.along:
             axis = float(np.sign(stance.axis @ self.seen.n)) * Z
         else:
             axis = _unit(_in_plane(self.axes(joint.a) @ joint.axis))
         ends = self.place(joint.a, joint.p), self.place(joint.b, joint.q)
         p, q = self.ends(joint.a, joint.p, joint.b, joint.q) if kind.keeps_distance else ends
-        return replace(joint, kind=stance.flat(kind).name, p=p, q=q, axis=axis, to_axis=axis)
+        return replace(joint, kind=stance.flat(kind).name, p=p, q=q, axis=axis, to_axis=axis, path=path)
+
+    def path(self, body: int, path: Path) -> Path:
+        """A path that is fixed in a body, without its height."""
+        found = path.turned(self.axes(body))
+        return replace(found, coefficients=_in_plane(found.coefficients), normal=np.rint(found.normal))
 
     def joint_start(self, k: int) -> JointStart:
         """Where joint k stands: coordinates as they are, R_ref about z."""
@@ -155,7 +163,7 @@ class Flat:
             return replace(load, p=p, q=q, frame=frames[0], to_frame=frames[1])
         if isinstance(load, JointLoad):
             return self.turn_spring(load) if load.kind == "turn_spring" else load
-        assert not isinstance(load, ThreadLoad)  # scenes with such friction are moved as they are given (compose.py)
+        assert isinstance(load, PointLoad), load  # scenes with ropes, threads that rub are moved as given (compose.py)
         if load.body == GROUND:
             return load
         S = self.axes(load.body) if load.in_body else self.seen.E
@@ -198,6 +206,15 @@ class Flat:
         offset = point.offset + height * (point.axes @ n)
         return NamedPoint(point.body, self.place(point.body, point.place), _in_plane(axes), offset)
 
+    def couplings(self) -> tuple[Coupling, ...]:
+        """The couplings, which ask for the same there."""
+        if not self.scene.mechanism.couplings:
+            return ()
+        from heuncli.reduction.plane.coupled import seen_from  # few scenes have them
+        from heuncli.reduction.restated_couplings import couplings_seen
+
+        return couplings_seen(self.scene.layout, lambda own: seen_from(self.seen, self.axes, own))
+
     def idle(self) -> tuple[IdleSpin, ...]:
         """The inertia that is lent about the normal."""
         found = [(i, self.moment(i, lent)) for i, lent in self.lent.items()]
@@ -221,7 +238,7 @@ class Flat:
             joints=tuple(self.joint(k) for k in range(len(of.joints))),
             loads=tuple(self.load(load) for load in of.loads), blows=tuple(self.blow(blow) for blow in of.blows),
             stops=of.stops, conditions=of.conditions,
-            points={name: self.point(point) for name, point in of.points.items()},
+            points={name: self.point(point) for name, point in of.points.items()}, couplings=self.couplings(),
         )  # fmt: skip
 
 

@@ -183,17 +183,21 @@ def _directions(scene: PreparedScene) -> Array:
 def _scalars(seen: View, flat: PreparedScene) -> Pairs:
     """Which coordinates and rates of the scene's state are which of the flat one's, times a factor.
 
-    The factor is the cosine between the two freedoms' directions, which are fixed in the same body.
+    The factor is the cosine between the two freedoms' directions, which are fixed in the same body; along a path it is
+    1, as the coordinate is the path's own.
     """
     full, small = seen.scene.layout, flat.layout
     own, of = _directions(seen.scene) @ seen.E.T, _directions(flat)
     shifts, flat_shifts = (layout.tables["freedoms"]["kind"] == kernel.SHIFT for layout in (full, small))
+    runs, flat_runs = (layout.tables["freedoms"]["pieces"] > 0 for layout in (full, small))
     found = []
     for body, there in zip(full.bodies, small.bodies, strict=True):
         for k in range(body["first_freedom"], body["end_freedom"]):
             for j in range(there["first_freedom"], there["end_freedom"]):
                 a, b = full.freedoms[k], small.freedoms[j]
                 factor = _cosine(float(own[k] @ of[j])) if shifts[k] == flat_shifts[j] else 0.0
+                if runs[k]:  # along a path
+                    factor = float(flat_runs[j])
                 if factor != 0.0 and a.q >= 0 and b.q >= 0:
                     found += [(a.q, b.q, factor), (a.u, b.u, factor)]
     return found

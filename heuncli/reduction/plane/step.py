@@ -12,7 +12,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane.departures import Departure, departures
+from heuncli.reduction.plane.departure import Departure
+from heuncli.reduction.plane.departures import departures
 from heuncli.reduction.plane.frame import candidates
 from heuncli.reduction.plane.mechanism import NotTold, flat_scene
 from heuncli.reduction.plane.states import States
@@ -33,11 +34,15 @@ def step(scene: PreparedScene) -> Reduction | tuple[str, ...]:
             return _reduction(seen)
         if nearest is None or _worse(nearest[1]) > _worse(found):
             nearest = seen, found
-    if nearest is None or not _nearly(nearest[1]):
+    if nearest is None:
         return ()
-    what = "; ".join(departure.what for departure in nearest[1][:MOST_TOLD])
-    more = " and more" if len(nearest[1]) > MOST_TOLD else ""
-    return (f"not solved in the plane across {_direction(nearest[0])}: {what}{more}",)
+    seen, found = nearest
+    found = found if _nearly(found) else _of_couplings(seen)
+    if not found:
+        return ()
+    what = "; ".join(departure.what for departure in found[:MOST_TOLD])
+    more = " and more" if len(found) > MOST_TOLD else ""
+    return (f"not solved in the plane across {_direction(seen)}: {what}{more}",)
 
 
 def _worse(found: list[Departure]) -> tuple[int, float]:
@@ -47,6 +52,15 @@ def _worse(found: list[Departure]) -> tuple[int, float]:
 def _nearly(found: list[Departure]) -> bool:
     """Whether a reader might expect that a scene is flat: one thing drives it out of the plane, or all by little."""
     return (len(found) == 1 and found[0].acts) or all(departure.size < tolerances.NEARLY_FLAT for departure in found)
+
+
+def _of_couplings(seen: View) -> list[Departure]:
+    """What couplings count out of the plane, of a scene whose joints all stand along it or across: why it is none."""
+    if not seen.scene.mechanism.couplings or any(stance.off > tolerances.FLAT for stance in seen.stances):
+        return []
+    from heuncli.reduction.plane.coupled import leaving  # few scenes have them
+
+    return list(leaving(seen, None))
 
 
 def _reduction(seen: View) -> Reduction | tuple[str, ...]:

@@ -185,6 +185,7 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
                 message,
                 "leave it out: what is wound on the sheave is not told, either; a drive of a drum's pin winds it",
             )
+        yield from stretching(name, rope)
         if rope.restitution is None:
             continue
         if not 0.0 <= rope.restitution <= 1.0:
@@ -193,3 +194,26 @@ def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
         if not rope.tension_only:
             message = "restitution of a rope that holds both ways, and so is never struck"
             yield Violation((*path, "restitution"), message, "tension_only: true")
+
+
+def stretching(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
+    """What is wrong with how a rope stretches."""
+    path = ("couplings", name)
+    if rope.stiffness is None:
+        if rope.damping is not None:
+            yield Violation((*path, "damping"), "damping of a rope that keeps its length", "stiffness: 4e5 N/m")
+        return
+    if not rope.stiffness > 0.0:
+        message = f"a rope of stiffness {rope.stiffness:g} N/m"
+        yield Violation(
+            (*path, "stiffness"), message, "of the whole rope, EA by its length; left out it keeps its length"
+        )
+    if rope.damping is not None and rope.damping < 0.0:
+        yield Violation((*path, "damping"), f"damping {rope.damping:g} N·s/m is below 0", "0, or how much it takes")
+    if rope.restitution is not None:
+        message = "restitution of a rope that stretches, and so is not struck"
+        yield Violation((*path, "restitution"), message, "tension_only: true alone lets it go slack and catch")
+    if any(place.slip == "none" for place in rope.through):
+        message = "a rope that stretches and is held on a sheave: what it carries over it at which strain is not told"
+        hint = "slip: free; or leave out the stiffness; or a rope on either side, each ending at a point of the rim"
+        yield Violation((*path, "stiffness"), message, hint)

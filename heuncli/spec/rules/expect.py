@@ -145,6 +145,8 @@ def output_instants(draft: DraftDocument, asked: int) -> int | None:
     """How many instants the output will have; None where a rope or a condition may end the run before."""
     rods = [joint for joint in draft.document.joints.values() if isinstance(joint, f.RodJoint)]
     may_stop = any(rod.tension_only and rod.restitution is None for rod in rods)
+    curves = [joint for joint in draft.document.joints.values() if isinstance(joint, f.CurveJoint)]
+    may_stop |= any(curve.one_sided and curve.restitution is None for curve in curves)
     may_stop |= draft.document.analysis.until is not None
     return None if may_stop and asked > 1 else asked
 

@@ -8,7 +8,8 @@ from collections.abc import Iterator
 from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
 from heuncli.method_rows import SMOOTH_ONLY, row_of
-from heuncli.spec.format import RodJoint
+from heuncli.spec.format import CurveJoint, RodJoint
+from heuncli.spec.format_couplings import RopeEntry
 from heuncli.spec.methods import unfit
 from heuncli.spec.rules.conditions import conditions
 from heuncli.spec.rules.joints import drives
@@ -65,6 +66,11 @@ def not_smooth(draft: DraftDocument) -> Iterator[tuple[Path_, str]]:
     for name, joint in document.joints.items():
         if isinstance(joint, RodJoint) and joint.tension_only:
             yield ("joints", name), f"the rope {name}, which may go slack"
+        if isinstance(joint, CurveJoint) and joint.one_sided:
+            yield ("joints", name), f"the curve {name}, which may lift off"
+    for name, coupling in document.couplings.items():
+        if isinstance(coupling, RopeEntry) and coupling.tension_only:
+            yield ("couplings", name), f"the rope {name}, which may go slack"
     for name in document.impulses:
         yield ("impulses", name), f"the impulse {name}"
     for path, given in conditions(draft):

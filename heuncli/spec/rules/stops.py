@@ -8,6 +8,7 @@ from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind, named
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec import format as f
+from heuncli.spec.rules import paths
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import Limits, drive_of, limitable, limits_of
 
@@ -51,8 +52,6 @@ def stop_form(draft: DraftDocument) -> Iterator[Violation]:
             assert kind is not None
             able = named([kind for kind in TYPES.values() if limitable(kind)], "and")
             hint = f"a {kind.name} has {' and '.join(fit)}" if fit else f"stops limit {able}"
-            if kind.follows_path:
-                hint = f"the run may end there: until: {stop.joint}.travel > 0.2; what it runs against is a spring"
             yield Violation(where, f"a {kind.name} has no {quantities[0]} to be limited", hint, key=True)
             continue
         low, high = getattr(stop, quantities[0])
@@ -129,13 +128,15 @@ def restitution(draft: DraftDocument) -> Iterator[Violation]:
             yield Violation(path, message, "a rope: tension_only: true; between limits: stops", key=True)
         if not 0.0 <= joint.restitution <= 1.0:
             yield Violation(path, f"restitution {joint.restitution:g} is not between 0 and 1", hint)
+    yield from paths.struck(draft)
 
 
 @rule("shared-name")
 def shared_name(draft: DraftDocument) -> Iterator[Violation]:
     """What strikes, and what stands beside it in the results, is told by its name."""
     entries = draft.names.entries
-    ropes = [n for n, j in draft.document.joints.items() if isinstance(j, f.RodJoint) and j.restitution is not None]
+    opening = f.RodJoint | f.CurveJoint
+    ropes = [n for n, j in draft.document.joints.items() if isinstance(j, opening) and j.restitution is not None]
     beside: dict[str, dict[str, Collection[str]]] = {
         "impulses": {"joints": ropes, "drives": entries["drives"]},
         "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")},

@@ -12,7 +12,7 @@ from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 
 @rule("thread-friction")
 def thread_friction(draft: DraftDocument) -> Iterator[Violation]:
-    """A coefficient or an efficiency, a mean radius, a rate at which friction is full; no force has the thread's name."""
+    """A coefficient or an efficiency, a mean radius, a rate at which it is full; no force has the thread's name."""
     for name, screw in draft.document.couplings.items():
         if not isinstance(screw, ScrewEntry) or screw.friction is None:
             continue

@@ -64,7 +64,7 @@ class Balance:
             joints, layout = recovery.joints, self.setup.scene.layout
             off = power_imbalance(layout, recovery.states, recovery.loads, joints, recovery.couplings, self.span)
             self.imbalance = larger(self.imbalance, off)
-            acting = [(largest(x.action.force), largest(x.action.moment)) for x in recovery.loads]
+            acting = [(largest(x.force), largest(x.moment)) for x in recovery.pushing]
             before = self.loads or [(0.0, 0.0)] * len(acting)
             self.loads = [(larger(F, f), larger(M, m)) for (F, M), (f, m) in zip(before, acting, strict=True)]
         energy = recovery.energy

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.coordinates import coordinates, points
@@ -46,26 +47,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
-        names = [body.name for body in mechanism.bodies]
-        struck = bool(recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        shown["couplings"] = {
-            own.coupling.name: coupling_block(own, names, pretension(own, recovery.loads)) for own in recovery.couplings
-        }
-        for own in recovery.couplings:
-            if own.coupling.given.type in ("gear", "screw", "belt"):
-                from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
-
-                given, block = own.coupling.given, shown["couplings"][own.coupling.name]
-                block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
-            if own.friction is not None:
-                from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
-
-                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own)
-            if own.coupling.given.type == "cam":
-                from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
-
-                angle = pressure_angle(own, mechanism.joints, states)
-                shown["couplings"][own.coupling.name]["pressure_angle"] = angle
+        shown["couplings"] = {own.coupling.name: told_coupling(recovery, own) for own in recovery.couplings}
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
@@ -187,6 +169,27 @@ def bushing(load: BushingLoad, applied: AppliedLoad, states: BodyStates) -> Forc
         (applied.action.force[:, None] @ R)[:, 0], (applied.action.moment[:, None] @ R)[:, 0]
     ))  # fmt: skip
     return {"shift": shift, "turn": turn, "force": force, "moment": moment}
+
+
+def told_coupling(recovery: Recovery, own: CouplingLoads) -> dict[str, Any]:
+    """The block of a coupling, with the numbers that its kind alone has."""
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    given, names = own.coupling.given, [body.name for body in mechanism.bodies]
+    block = coupling_block(own, names, pretension(own, recovery.loads))
+    if given.type in ("gear", "screw", "belt"):
+        from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+
+        struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
+        block = TOLD[given.type](given, own.carried, struck) | block
+    if own.friction is not None:
+        from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
+
+        block["efficiency"] = efficiency(own, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+    if given.type == "cam":
+        from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+
+        block["pressure_angle"] = pressure_angle(own, mechanism.joints, recovery.states)
+    return block
 
 
 def pretension(of: CouplingLoads, loads: Sequence[AppliedLoad]) -> list[Action]:

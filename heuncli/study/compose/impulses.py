@@ -224,9 +224,11 @@ def only_of(block: Block, causes: Sequence[str]) -> Block:
 
 def is_open(block: Block, path: str) -> bool:
     """Whether a component named by its path within a block is open: nan."""
-    name, _, axis = path.partition(".")
-    value = block[name][..., "xyz".index(axis)] if axis in ("x", "y", "z") and axis else block[name]
-    return bool(np.isnan(value).any())
+    *names, last = path.split(".")
+    value: Any = block
+    for name in names if last in {*"xyz"} else (*names, last):
+        value = value[name]
+    return bool(np.isnan(value[..., "xyz".index(last)] if last in {*"xyz"} else value).any())
 
 
 def apart(own: Impulses, others: Sequence[Impulses]) -> dict[tuple[str, str], float]:

@@ -152,7 +152,7 @@ def least_by_unit(recovery: Recovery, near: Indices) -> dict[str, Array]:
     mechanism, states, size = recovery.setup.scene.mechanism, recovery.states, recovery.setup.scene.layout.size
     mass, one = sum(body.mass for body in mechanism.bodies), np.ones(len(near))
     v = np.maximum(largest(states.v_centre[near]), size * largest(states.omega[near]))
-    pushed = [largest(a.force[near]) + largest(a.moment[near]) / size for a in recovery.applied]
+    pushed = [largest(a.force[near]) + largest(a.moment[near]) / size for a in recovery.pushing]
     a = v * v / size + float(np.linalg.norm(mechanism.gravity)) + sum(pushed, 0.0 * one) / mass
     v = np.maximum(v, np.sqrt(a * size))
     return {

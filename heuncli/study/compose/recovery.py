@@ -15,7 +15,7 @@ from heuncli.integration.diagnosis.solvability import require_directions, requir
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, body_states
-from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads
+from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
 from heuncli.kinetostatics.reactions import JointLoads, at_instants, joint_loads
@@ -181,7 +181,7 @@ class Recovery:
         layout = self.setup.scene.layout
         own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
         members = members_of(layout.mechanism) if own is None else own
-        found = shares_of(layout, self.recovered, self.states, self.applied, members)
+        found = shares_of(layout, self.recovered, self.states, self.pushing, members)
         if self.decided is None:
             return found
         joints, more = self.decided.chosen(found.joints, self.states)
@@ -193,6 +193,11 @@ class Recovery:
     def applied(self) -> list[Action]:
         """The actions of the applied loads, and of what is given beside them."""
         return [*(load.action for load in self.loads), *self.given]
+
+    @property
+    def pushing(self) -> list[Action]:
+        """What acts by laws: the same, and ropes that stretch."""
+        return [*self.applied, *rope_actions(self.couplings)]
 
     @cached_property
     def actions(self) -> list[Action]:
@@ -209,7 +214,7 @@ class Recovery:
     @cached_property
     def energy(self) -> Block:
         """Kinetic and potential energy, and work."""
-        return energy(self.setup.scene.layout, self.recovered, self.states, self.loads)
+        return energy(self.setup.scene.layout, self.recovered, self.states)
 
     @cached_property
     def magnitudes(self) -> Magnitudes:

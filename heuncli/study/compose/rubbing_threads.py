@@ -10,8 +10,8 @@ from heuncli.spec.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
 STRUCK = (
-    "the blow at t = {:.6g} s goes through the thread {} as if nothing rubbed in it: a self-locking one would hold it, and "
-    "any other takes a part of it"
+    "the blow at t = {:.6g} s goes through the thread {} as if nothing rubbed in it: a self-locking one would hold it, "
+    "and any other takes a part of it"
 )
 
 

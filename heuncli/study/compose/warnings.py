@@ -96,13 +96,15 @@ def would_let_go(mechanism: Mechanism, name: str) -> str:
     kinds = {coupling.name: coupling.given.type for coupling in mechanism.couplings}
     if kinds.get(name) == "cam":
         return f"contact lost: the follower of cam {name} lifts off (with restitution it would fly, and strike again)"
+    if any(joint.name == name and joint.one_sided for joint in mechanism.joints):
+        return f"contact lost: the point of joint {name} lifts off its path (with restitution it would fly, and strike)"
     return f"the {kinds.get(name, 'rod')} {name} would have to push (tension_only)"
 
 
 def pushes(rope: CouplingLoads) -> bool:
     """Whether the rope of a coupling pushes at the one instant, before or behind any of its sheaves."""
     return any(
-        row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=True)
+        row.tension_only and force[0] > 0.0 for row, force in zip(rope.coupling.rows, rope.multipliers, strict=False)
     )
 
 
@@ -112,6 +114,9 @@ def of_ropes(setup: Setup, recovery: Recovery, joints: Mapping[str, JointBlock])
     rods = [
         j.name for j in mechanism.joints if j.tension_only and j.name in joints and joints[j.name]["tension"][0] < 0.0
     ]
+    layout = setup.scene.layout
+    pulled = recovery.recovered.rows["multiplier"][0] > 0.0
+    rods += [j.name for k, j in enumerate(mechanism.joints) if j.one_sided and pulled[layout.rows.index(k)]]
     ropes = [own.coupling.name for own in recovery.couplings if own.coupling.given.type == "rope" and pushes(own)]
     cams = [own for own in recovery.couplings if own.carries == "contact" and own.coupling.rows[0].tension_only]
     return [would_let_go(mechanism, name) for name in (*rods, *ropes)] + [

@@ -117,7 +117,7 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     cut = [mechanism.joints[k].name for k in layout.spanning.cut]
     if cut:
         sentences.append(f"closed at {some(cut)}; the other joints make the tree that carries the motion")
-    coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings]
+    coupled = [f"{own.name} ({own.given.type})" for own in mechanism.couplings if own.stretched is None]
     if coupled:
         sentences.append(f"coupled: {some(coupled)}")
     if any(isinstance(load, ThreadLoad) for load in mechanism.loads):
@@ -130,6 +130,9 @@ def reasons(scene: PreparedScene, model: Block) -> list[str]:
     bushings = [load.name for load in mechanism.loads if isinstance(load, BushingLoad)]
     if bushings:
         sentences.append(f"on bushings, which leave all freedoms: {some(bushings)}")
+    ropes = [own.name for own in mechanism.couplings if own.stretched is not None]
+    if ropes:
+        sentences.append(f"on ropes that stretch, which leave all freedoms: {some(ropes)}")
     floating = [mechanism.bodies[h.body].name for h in layout.spanning.hangs if h.joint < 0]
     if floating:
         sentences.append(f"carried by nothing, free: {some(floating)}")

@@ -117,12 +117,15 @@ def set_up(
     asked_method = method or spec.analysis.method
     auto = asked_method.lower() == AUTO
     chosen = method_of(asked_method) if spec.analysis.type == "motion" else None
-    reduced = None
+    reduced, follows = None, NOT_DETERMINED
     if chosen is not None and reduce:
-        reduced, runner = reduced_runner(scene, runner, stages)
+        if auto and scene.mechanism.couplings:  # trains are driven, most of them: then a smaller scene saves nothing
+            follows = determined(runner.moving)
+        if not follows.is_so:
+            reduced, runner = reduced_runner(scene, runner, stages)
+            follows = determined(runner.moving)
     told = reductions(left_out, scene, reduced)
     if chosen is not None and auto:
-        follows = determined(runner.moving) if reduce else NOT_DETERMINED
         chosen, told = FOLLOWED if follows.is_so else first_choice(runner.moving.layout, spec), follows.beside(told)
     held_twice = redundancy(scene, runner, stages)
     note = model_note(scene, runner, chosen.name if chosen else "none", held_twice) | told
@@ -162,7 +165,7 @@ def with_slack_ropes(mechanism: Mechanism) -> Mechanism:
 
     So does what a cam presses: it may lie on it or not.
     """
-    joints = [replace(j, restitution=0.0) if j.tension_only and j.restitution is None else j for j in mechanism.joints]
+    joints = [replace(j, restitution=0.0) if j.opens and j.restitution is None else j for j in mechanism.joints]
     return replace(mechanism, joints=tuple(joints), couplings=tuple(slackening(own) for own in mechanism.couplings))
 
 

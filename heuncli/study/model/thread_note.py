@@ -11,7 +11,6 @@ from collections.abc import Iterator
 from heuncli.mechanism.model import Mechanism
 from heuncli.spec.couplings import Screw, ThreadFriction
 
-
 LOCKED = "self-locking"
 
 

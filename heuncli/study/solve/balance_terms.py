@@ -12,6 +12,7 @@ from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import AppliedLoad
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.foundation import inertia_rows
+from heuncli.mechanism.model import RopeLoad
 from heuncli.results import Array
 from heuncli.shapes.by_component import instants_first, largest, rows, squares
 from heuncli.study.model.setup import Setup
@@ -44,6 +45,7 @@ class BalanceTerms:
         self.weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
         of_rows = several.rows["multiplier"][..., None] * several.rows["f"]
         applied = [load.action for load in loads]
+        pulls = [several.loads["value"][:, own] for load, own in mechanism.load_rows() if isinstance(load, RopeLoad)]
         # what spins freely is a balance of terms, too: m x_s.. and I sigma. + sigma x I sigma vanish there
         layout, bodies = setup.scene.layout, mechanism.bodies
         turning = np.abs(states.rows_of("alpha")).max(axis=1) + squares(states.rows_of("omega"))
@@ -51,7 +53,14 @@ class BalanceTerms:
         offset = np.array([[b.mass * float(np.abs(arm).max())] for b, arm in zip(bodies, arms, strict=True)])
         gyration = np.array([[float(np.trace(b.inertia))] for b in bodies])
         joint_force, joint_moment = (rows(several.bodies[name]) for name in ("joint_force", "joint_moment"))
-        forces = [ma, turning * offset, joint_force, rows(of_rows), *(rows(x.force) for x in applied)]
+        forces = [
+            ma,
+            turning * offset,
+            joint_force,
+            rows(of_rows),
+            *(rows(x.force) for x in applied),
+            *(x.T for x in pulls),
+        ]
         moments = [spin, turning * gyration, joint_moment, *(rows(x.moment) for x in applied)]
         self.force = np.maximum(_at_each(forces), np.abs(self.weight).max(initial=0.0))
         self.moment = np.maximum(_at_each(moments), size * self.force)

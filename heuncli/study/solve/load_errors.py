@@ -21,9 +21,9 @@ from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads
+from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.foundation import total
+from heuncli.kinetostatics.foundation import central_axis, total
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
@@ -39,6 +39,9 @@ from heuncli.study.solve.motion_errors import TOLD, moved_quantities, turned_apa
 CHOSEN_ANEW = 1e-6  # of the largest multiplier: what redundant joints leave open changes by more when rows are chosen
 CUTS_AT_ONCE, BLOCK = 200_000, 8  # instants times cuts whose loads are compared together; in whole blocks, as of BLAS
 
+
+Quantity = tuple[str, Array]  # of couplings: what it is, of UNITS, and values (n, k, 3) or (n, k, 1)
+UNITS = {"force": "N", "moment": "N·m", "place": "m", "angle": "rad"}
 
 # Kinds, and the reports that tell something of them: what nobody asks for is not compared.
 TOLD_IN = {
@@ -112,7 +115,7 @@ class LoadErrors:
         if self.compared & {"reactions", "foundation", "sections", "forces"}:
             self.add_loads(several, states, loads)
         if "energy" in self.compared:
-            self.add_energy(several, states, loads)
+            self.add_energy(several, states)
         if "motion" in self.compared:
             self.add_motion(states)
 
@@ -130,9 +133,12 @@ class LoadErrors:
             joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
         if "reactions" in self.compared:
-            belts = [own for own in applied if own.name in {x.coupling.name for x in couplings}]  # their pretension
-            told = [in_axes(load, states, self.setup.asked.axes) for load in joints]
-            self.add_joints(told, [*coupled, *belts], terms)
+            coupling_told: Sequence[Quantity] = ()
+            if couplings:
+                from heuncli.study.solve.coupling_errors import told_of  # few scenes have them
+
+                coupling_told = [*told_of(couplings, applied, self.setup.scene.mechanism.joints, states)]
+            self.add_joints([in_axes(load, states, self.setup.asked.axes) for load in joints], coupling_told, terms)
         if "foundation" in self.compared:
             driven = [load for load in joints if load.drive is not None]
             self.add_foundation(states, [*acting, *joint_actions(driven)], terms)
@@ -143,7 +149,8 @@ class LoadErrors:
         if self.by_cause:
             from heuncli.study.solve.share_errors import compared_shares  # few runs ask for them
 
-            for kind, name, values, more in compared_shares(self.setup, several, states, applied, self.compared, terms):
+            pushing = [*applied, *rope_actions(couplings)]
+            for kind, name, values, more in compared_shares(self.setup, several, states, pushing, self.compared, terms):
                 F, M = (rounding * more for rounding in terms.rounding)
                 rounding, of = (M, terms.moment * more) if name == "moment" else (F, terms.force * more)
                 self.take((f"{kind} {BY_CAUSE}", name), values, rounding, of)
@@ -195,13 +202,16 @@ class LoadErrors:
         far = [max(float(np.sum(np.square(p - body.center))) for p in marks(body)) for body in bodies]
         return np.asarray(np.sqrt(far))
 
-    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Action], terms: BalanceTerms) -> None:
+    def add_joints(self, joints: Sequence[JointLoads], coupled: Sequence[Quantity], terms: BalanceTerms) -> None:
         """Reactions, in the axes in which they are told, those of couplings among them, and drives."""
         F, M = terms.rounding
-        for some in (joints, coupled):
-            if some:
-                self.take(("reactions", "force"), np.stack([x.force for x in some], axis=1), F, terms.force)
-                self.take(("reactions", "moment"), np.stack([x.moment for x in some], axis=1), M, terms.moment)
+        if joints:
+            self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
+            self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
+        none = np.zeros(len(F))
+        of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (none, none), "angle": (none, none)}
+        for name, values in coupled:
+            self.take(("reactions", name), values, *of[name])
         for load in joints:
             if load.drive is not None and load.joint.drive is not None:
                 turns = load.joint.drive.quantity == "angle"
@@ -221,8 +231,10 @@ class LoadErrors:
         forces_rounding, moments_rounding = terms.rounding
         inner = [action for action in actions if action.kind != "joint" and action.from_ is not None]
         elements = [on for action in inner if (on := action.on_ground()) is not None]
+        whole = total(states, terms.weight - terms.ma, terms.spin, actions, origin)
+        self.add_axis(*whole)
         wrenches = [
-            ("foundation", *total(states, terms.weight - terms.ma, terms.spin, actions, origin)),
+            ("foundation", *whole),
             ("effects", terms.ma.sum(axis=1), np.sum(cross_rows(arm, terms.ma), axis=1)),
             ("effects", terms.ma.sum(axis=1), terms.spin.sum(axis=1)),
             *(("elements", force, moment) for force, moment, _ in elements),
@@ -231,6 +243,16 @@ class LoadErrors:
             F, M = in_plane(force, moment) if mechanism.planar else (force, moment)
             self.take((kind, "force"), F, forces_rounding, terms.force)
             self.take((kind, "moment"), M, moments_rounding + far * forces_rounding, moments)
+
+    def add_axis(self, force: Array, moment: Array) -> None:
+        """The central axis of the wrench at the asked instants: where there is next to no force it errs by far more."""
+        count = len(force) // len(self.asked)
+        told = np.repeat(self.asked, count)
+        axis = central_axis(force[told], moment[told], self.setup.about, 0.0)
+        for unit, values in (("1", axis["direction"]), ("m", axis["point"]), ("m", axis["pitch"][:, None])):
+            own = values[0::count]
+            apart = np.max([norms((own - values[k::count])[:, None])[:, 0] for k in range(1, count)], axis=0)
+            self.extent("axis", unit).differ(np.nan_to_num(apart), self.before[self.asked])
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
@@ -254,9 +276,9 @@ class LoadErrors:
                 turn = turned * lengths(both[0::count])
                 self.take(("sections", quantity), both, rounding, of, turn)
 
-    def add_energy(self, several: Recovered, states: BodyStates, loads: Sequence[AppliedLoad]) -> None:
+    def add_energy(self, several: Recovered, states: BodyStates) -> None:
         """Kinetic and potential energy, and work."""
-        block = energy(self.setup.scene.layout, several, states, loads)
+        block = energy(self.setup.scene.layout, several, states)
         m = np.array([b.mass for b in self.setup.scene.mechanism.bodies])
         speed = np.abs(states.v_centre).max(axis=(1, 2))
         lift = np.abs(states.centre @ self.setup.scene.mechanism.gravity) @ m
@@ -283,11 +305,12 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains")}
+        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains", "axis")}
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
                 found[kind, unit] = max(of.get((part, quantity), 0.0) for part in parts)
+        found |= {("reactions", UNITS[x]): of["reactions", x] for x in ("place", "angle") if ("reactions", x) in of}
         found["drives", "N"], found["drives", "N·m"] = (of.get(("drives", x), 0.0) for x in ("thrust", "torque"))
         found["energy", "J"] = max(of.get(("energy", name), 0.0) for name in ("kinetic", "potential", "work"))
         return found | self.errors_by_cause()

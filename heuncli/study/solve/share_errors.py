@@ -13,6 +13,8 @@ import numpy as np
 from heuncli.integration.evaluator import Recovered
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
+from heuncli.kinetostatics.coupling_numbers import numbers_of
+from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.kinetostatics.joint_axes import in_axes
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
@@ -42,12 +44,12 @@ def compared_shares(
     kinds: Set[str],
     terms: BalanceTerms,
 ) -> Iterator[ComparedShares]:
-    """The shares of the kinds of loads that are compared, of joints, foundation and sections."""
+    """The shares of the kinds of loads that are compared, of joints, couplings, foundation and sections."""
     layout = setup.scene.layout
     shares = shares_of(layout, several, states, applied, members_of(layout.mechanism))
     more = larger(shares.column, terms)
     told = [in_axes(load, states, setup.asked.axes) for load in shares.joints]
-    found = of_joints(told) if "reactions" in kinds else []
+    found = of_joints(told) + of_couplings(shares.couplings) if "reactions" in kinds else []
     found += of_foundation(setup, states, shares) if "foundation" in kinds else []
     found += of_sections(setup, states, shares) if "sections" in kinds else []
     for kind, name, values in found:
@@ -76,6 +78,15 @@ def of_joints(joints: Sequence[JointLoads]) -> OfKind:
             name = "moment" if load.joint.drive.quantity == "angle" else "force"
             found.append(("drives", name, load.drive.T[..., None]))
     return found
+
+
+def of_couplings(couplings: Sequence[CouplingLoads]) -> OfKind:
+    """The shares of what couplings are told by, where it is a sum of them."""
+    numbers = [number for own in couplings for number in numbers_of(own) if number.is_sum]
+    return [
+        ("reactions", "moment" if number.is_moment else "force", np.moveaxis(number.values, 0, 1)[..., None])
+        for number in numbers
+    ]
 
 
 def of_foundation(setup: Setup, states: BodyStates, shares: Shares) -> OfKind:

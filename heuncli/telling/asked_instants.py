@@ -1,4 +1,4 @@
-"""When load cases are taken: instants, the first and the last, those of extremes of the results, and blows."""
+"""The words of `--at`: instants, the first and the last, those of extremes of the results, and blows."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import Problem, SolveError, SpecError
+from heuncli.errors import Problem, SolveError, UsageError
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import did_you_mean
-from heuncli.results import Block
+from heuncli.results import Array, Block
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, lost_from, peak
 from heuncli.study.ask.study import Study
+from heuncli.telling.asked_values import within_run
 
 EXTREMES: dict[str, Literal["abs", "max", "min"]] = {"peak": "abs", "max": "max", "min": "min"}
 IMPULSE = "impulse"
@@ -42,7 +42,7 @@ class TakenInstant(NamedTuple):
 
 
 def parse(words: str) -> list[AskedInstant]:
-    """The instants that `--at` asks for. Raises SpecError [bad-option] with all words that ask for none."""
+    """The instants that `--at` asks for. Raises UsageError with all words that ask for none."""
     found, problems = list[AskedInstant](), list[Problem]()
     for word in (part.strip() for part in words.split(",")):
         one = _parsed(word)
@@ -51,7 +51,7 @@ def parse(words: str) -> list[AskedInstant]:
         elif all(one.word != other.word for other in found):
             found.append(one)
     if problems:
-        raise SpecError(*problems)
+        raise UsageError(*problems)
     return found
 
 
@@ -77,7 +77,9 @@ def _meant(word: str) -> str:
         return f"did you mean peak:{word}?"
     known = (*EXTREMES, IMPULSE) if colon else ("first", "last")
     near = did_you_mean(kind, known, "words")
-    return near.replace("?", f":{what}?") if colon and what and near.startswith("did you mean") else HINT
+    if not near.startswith("did you mean") or (colon and not what):
+        return HINT
+    return near.replace("?", f":{what}?") if colon else near
 
 
 def measures(asked: Sequence[AskedInstant]) -> list[MeasureRequest]:
@@ -85,8 +87,13 @@ def measures(asked: Sequence[AskedInstant]) -> list[MeasureRequest]:
     return [MeasureRequest(EXTREMES[one.word.partition(":")[0]], one.what) for one in asked if one.kind == "extreme"]
 
 
+def times_of(asked: Sequence[AskedInstant], study: Study) -> Array:
+    """The instants of a run that are asked for, (n,) ascending, each once, also those of which nothing is claimed."""
+    return np.unique([one.time for word in asked for one in _taken(word, study)])
+
+
 def taken(asked: Sequence[AskedInstant], study: Study) -> list[TakenInstant]:
-    """When the cases are taken. Raises NotOneNumber, SolveError beyond the horizon."""
+    """When the cases of a body are taken. Raises NotOneNumber, SolveError beyond the horizon."""
     found = [one for word in asked for one in _taken(word, study)]
     horizon = study.results.horizon
     for one in found:
@@ -102,20 +109,9 @@ def _taken(asked: AskedInstant, study: Study) -> Iterator[TakenInstant]:
     elif asked.kind == "extreme":
         yield TakenInstant(asked.word, _of_extreme(asked, study))
     elif asked.kind == "at":
-        yield TakenInstant(asked.word, _within(asked, study))
+        yield TakenInstant(asked.word, float(within_run("--at", [asked.at], study.results.time)[0]))
     else:
         yield TakenInstant(asked.word, float(times[0 if asked.kind == "first" else -1]))
-
-
-def _within(asked: AskedInstant, study: Study) -> float:
-    """The instant, if the run has it."""
-    times = study.results.time
-    slack = tolerances.SAME_INSTANT * float(np.ptp(times))
-    if not times[0] - slack <= asked.at <= times[-1] + slack:
-        one = len(times) == 1
-        span = f"there is one instant, t = {times[0]:.6g} s" if one else f"from {times[0]:.6g} to {times[-1]:.6g} s"
-        raise NotOneNumber(f"--at {asked.word}: the run has {span}", "--at last, or a longer duration")
-    return float(np.clip(asked.at, times[0], times[-1]))
 
 
 def _of_extreme(asked: AskedInstant, study: Study) -> float:

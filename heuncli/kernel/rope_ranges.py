@@ -1,0 +1,78 @@
+"""How fast the length of a rope may change over a stretch of time of length T, and how fast that does.
+
+Of a strand from a sheave a to a sheave or point b (sheaves.py), seen from a, by bounds of the motions:
+
+    V = speed_a + speed_b + spin_a |D|                     of the centre of b
+    |g| <= G = 1 + (1 - l/S) |sigma| / l                   1 - l/S <= h^2 / (2 l^2)
+    |S'|  <= G V + R_b (spin_a + spin_b)
+    |S''| <= G (A_a + A_b + (twist_a + spin_a^2) |D| + 2 spin_a V) + V^2 / l + |sigma| V^2 (2 + |sigma| / l) / l^2
+             + R_b (twist_a + twist_b + spin_a (spin_a + spin_b))
+with the least l and the largest |D| and h that there may be within T of how the strand lies at its end. What lies on a
+sheave grows by what its strands tell.
+"""
+
+from __future__ import annotations
+
+try:
+    import cython
+except ImportError:
+    from heuncli.kernel.shadow import cython
+
+if not cython.compiled:
+    from math import fabs, sqrt
+
+    from heuncli.kernel.algebra import Vec3, dot, norm, sub
+    from heuncli.kernel.libm import INFINITY
+    from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
+    from heuncli.kernel.programs import Jet
+    from heuncli.kernel.scene import ROD, STRAND, Closure, Load, Scene
+    from heuncli.kernel.shadow import cython
+    from heuncli.kernel.stepping import Orbits
+    from heuncli.kernel.values import LengthBounds
+
+
+def bounds_of_rope(
+    scene: cython.pointer[Scene], points: cython.pointer[Orbits], load: cython.pointer[Load], T: cython.double
+) -> LengthBounds:
+    """Of all its parts together, as they lie at the end of the stretch."""
+    i: cython.Py_ssize_t
+    rate: cython.double = 0.0
+    second: cython.double = 0.0
+    far: cython.double = 0.0
+    for i in range(load.part, load.part + load.part_count):
+        part: cython.pointer[Closure] = cython.address(scene.parts[i])
+        if part.kind == ROD or part.kind == STRAND:
+            own: Jet = bounds_of_strand(points, part, T)
+            rate += fabs(part.factor) * own.rate
+            second += fabs(part.factor) * own.second
+            far += fabs(part.factor) * own.value
+    bend: cython.double = 0.125 * second * T * T if second < INFINITY else 0.5 * rate * T
+    return LengthBounds(rate, second, bend, far, scene.limits.rounding)
+
+
+def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closure], T: cython.double) -> Jet:
+    """Of one strand: how far it may be from the origin, and its rates; between two points it turns with neither."""
+    turns: cython.double = 1.0 if part.kind == STRAND else 0.0
+    sigma: cython.double = turns * fabs(part.g.x - part.g.y)
+    radius: cython.double = turns * fabs(part.g.y)
+    spin: cython.double = turns * spin_of(points, part.a)
+    both: cython.double = spin + turns * spin_of(points, part.b)
+    apart: cython.double = speed_of(points, part.a, part.p) + speed_of(points, part.b, part.q)
+    lies: Vec3 = sub(part.on_b, part.on_a)
+    span: cython.double = sqrt(dot(lies, lies) + sigma * sigma) + apart * T
+    V: cython.double = apart + spin * span
+    across: cython.double = fabs(dot(part.t, lies)) if part.kind == STRAND else norm(lies)
+    slant: cython.double = sqrt(fabs(dot(lies, lies) - across * across)) + V * T
+    nearest: cython.double = sqrt(across * across + sigma * sigma) - V * T
+    far: cython.double = reach_of(points, part.a, part.p) + reach_of(points, part.b, part.q) + sigma + radius
+    free: cython.double = nearest * nearest - sigma * sigma
+    if not nearest > 0.0 or not free > 0.0:
+        return Jet(far, INFINITY if sigma > 0.0 else V + radius * both, INFINITY)
+    l: cython.double = sqrt(free)
+    G: cython.double = 1.0 + turns * 0.5 * slant * slant * sigma / (free * l)
+    A: cython.double = acceleration_of(points, part.a, part.p) + acceleration_of(points, part.b, part.q)
+    twist: cython.double = turns * twist_of(points, part.a)
+    A = G * (A + (twist + spin * spin) * span + 2.0 * spin * V)
+    A += V * V / l + sigma * V * V * (2.0 + sigma / l) / free
+    A += radius * (twist + turns * twist_of(points, part.b) + spin * both)
+    return Jet(far, G * V + radius * both, A)
