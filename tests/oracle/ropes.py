@@ -148,7 +148,7 @@ def exerted(way: Sequence[Strand], tension: float) -> list[tuple[str, Array, Arr
 def pulls(read: Model, state: State) -> dict[str, list[tuple[str, Array, Array]]]:
     """What ropes that stretch pull with, by their names."""
     return {
-        name: exerted(strands(stays, state), tension(read, name, state))
-        for name, stays in ropes(read).items()
-        if "stiffness" in read.scene["couplings"][name]
+        name: exerted(strands([stay(read, place) for place in given["through"]], state), tension(read, name, state))
+        for name, given in (read.scene.get("couplings") or {}).items()
+        if given["type"] == "rope" and "stiffness" in given
     }
