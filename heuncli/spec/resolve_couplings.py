@@ -79,7 +79,8 @@ def conditions_of_belts(couplings: Mapping[str, f.CouplingEntry]) -> Iterator[Re
 def at_least(least: float) -> str:
     """A number above zero with four digits, rounded up: what is written so is enough."""
     quantum = 10.0 ** (math.floor(math.log10(least)) - 3)
-    return f"{math.ceil(least / quantum) * quantum:.4g}"
+    steps = math.ceil(least / quantum * (1.0 - 1e-9))  # what a search finds is no more exact than that
+    return f"{steps * quantum:.4g}"
 
 
 def below_zero(name: str, of: str, why: str, *, ends: bool) -> ResultCondition:

@@ -47,27 +47,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "joints" in wanted:
         shown["joints"] = {j.joint.name: joint_block(j) for j in recovery.asked_joints}
         shown["stops"] = stops(recovery.asked_joints)
-        names = [body.name for body in mechanism.bodies]
-        struck = bool(recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        shown["couplings"] = {
-            own.coupling.name: coupling_block(own, names, pretension(own, recovery.loads)) for own in recovery.couplings
-        }
-        for own in recovery.couplings:
-            if own.coupling.given.type in ("gear", "screw", "belt"):
-                from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
-
-                given, block = own.coupling.given, shown["couplings"][own.coupling.name]
-                block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
-            if own.friction is not None:
-                from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
-
-                none = tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"]
-                shown["couplings"][own.coupling.name]["efficiency"] = efficiency(own, none)
-            if own.coupling.given.type == "cam":
-                from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
-
-                angle = pressure_angle(own, mechanism.joints, states)
-                shown["couplings"][own.coupling.name]["pressure_angle"] = angle
+        shown["couplings"] = couplings(recovery)
     if SHARES in wanted:
         from heuncli.study.compose.cause_shares import put_shares  # few runs ask for them
 
@@ -96,6 +76,30 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "forces" in wanted:
         shown["forces"] = forces(recovery.loads, states, {own.name for own in mechanism.couplings})
     return shown
+
+
+def couplings(recovery: Recovery) -> dict[str, Any]:
+    """The blocks of the couplings, with what engineers ask of some kinds beside."""
+    mechanism, layout = recovery.setup.scene.mechanism, recovery.setup.scene.layout
+    names = [body.name for body in mechanism.bodies]
+    struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
+    found: dict[str, Any] = {}
+    for own in recovery.couplings:
+        given, block = own.coupling.given, coupling_block(own, names, pretension(own, recovery.loads))
+        if given.type in ("gear", "screw", "belt"):
+            from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+
+            block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
+        if own.friction is not None:
+            from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
+
+            block["efficiency"] = efficiency(own, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
+        if given.type == "cam":
+            from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+
+            block["pressure_angle"] = pressure_angle(own, mechanism.joints, recovery.states)
+        found[own.coupling.name] = block
+    return found
 
 
 def blocks_asked_for(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
