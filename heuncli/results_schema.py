@@ -320,8 +320,10 @@ KIND_OF = {
     "attitudes": "motion",
     "rodrigues": "motion",
     "strains": "motion",
+    "travels": "motion",
 }
 ATTITUDES = {"rotation": "attitudes", "quaternion": "attitudes", "rodrigues": "rodrigues"}
+TRAVELS = ("travel", "speed", "acceleration")  # along a path by whatever its tables are over, elsewhere as places
 OF_A_LOAD = dict.fromkeys(("length", "angle", "rate"), "motion") | dict.fromkeys(("shift", "turn"), "strains")
 NAMES = ("BODY", "POINT", "JOINT", "ELEMENT", "STOP", "COUPLING", "END", "SECTION", "FORCE", "CAUSE", "EVENT", "NUMBER")
 BY_CAUSE = "by cause"  # of kinds of errors
@@ -444,6 +446,8 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
         return "energy"
     if kind == "bodies" and number in ATTITUDES:
         return ATTITUDES[number]
+    if kind == "coordinates" and number in TRAVELS:
+        return "travels"
     return ESTIMATES.get(kind, "motion")
 
 

@@ -99,6 +99,9 @@ def certainty(results: Results, labels: Labels, of: Magnitudes) -> Certainty:
             errors |= _of_wrench(own, results.relative_error(kind), scales, of.size)
     errors |= of.errors
     errors |= results.errors_of_places(of.size)
+    for unit in ("m", "m/s", "m/s²", "rad/s²"):  # where no path counts them in its own measure
+        if ("travels", unit) not in of.errors and ("motion", unit) in errors:
+            errors["travels", unit] = errors["motion", unit]
     lost = of.lost()
     load = max(scales.get(("sections", "N"), 0.0), scales.get(("sections", "N·m"), 0.0) / of.size)
     if load > 0.0:  # stresses are in proportion to what makes them

@@ -85,6 +85,17 @@ joints:
 couplings: {sum: {type: ratio, of: [p, q], factors: [0.001, 0.003]}}
 analysis: {duration: 1, samples: 11}
 """
+PATH = """
+heun: 1
+gravity: [0, 0, -10]
+tables:
+  x: {x: [-2000, -1000, 0, 1000, 2000], y: [-2, -1, 0, 1, 2], interpolation: cubic}
+  z: {x: [-2000, -1000, 0, 1000, 2000], y: [2, 0.5, 0, 0.5, 2], interpolation: cubic}
+ground: {points: {O: [0, 0, 0]}}
+bodies: {bead: {mass: 1, center: [0, 0, 0], inertia: [0.1, 0.1, 0.1], points: {P: [0, 0, 0]}}}
+joints: {wire: {type: curve, from: ground.O, to: bead.P, x: x, z: z, initial: {travel: 1000}}}
+analysis: {duration: 1, samples: 11}
+"""
 SWINGING = """
 heun: 1
 gravity: [0, 0, -3]
@@ -112,13 +123,16 @@ def test_the_error_of_the_central_axis_covers_a_coarse_run() -> None:
     [
         (DRUM, "couplings.rope.on.drum.moment"),
         (WHEEL, "couplings.rim.on.ground.point"),
+        (PATH, "coordinates.wire.travel"),
+        (PATH, "coordinates.wire.speed"),
+        (PATH, "coordinates.wire.acceleration"),
         (SUM, "couplings.sum.moment"),
         (SUM, "couplings.sum.shares.gravity.moment"),
     ],
-    ids=["drum", "wheel", "sum", "share"],
+    ids=["drum", "wheel", "travel", "speed", "acceleration", "sum", "share"],
 )
-def test_the_error_of_what_a_coupling_exerts_covers_a_coarse_run(scene: str, path: str) -> None:
-    """What turns a drum, where a wheel touches, a load of small factors: none of them is an action as it stands."""
+def test_the_error_of_what_a_machine_element_tells_covers_a_coarse_run(scene: str, path: str) -> None:
+    """What turns a drum, where a wheel touches, a way in mm, a load of small factors: none is an action or a place."""
     asked = {"by_cause": "shares" in path}
     coarse, close = (heuncli.solve(text=scene, tolerance=tolerance, **asked)[path] for tolerance in (1e-3, 1e-10))
     off = np.linalg.norm((coarse.values - close.values).reshape(11, -1), axis=1).max()

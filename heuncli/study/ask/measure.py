@@ -254,7 +254,8 @@ def stated_error(study: Study, keys: Sequence[str]) -> float:
     if row is None:
         return np.nan
     kind, lost = kind_of_error(keys[0], ".".join(keys[1:-1]), keys[-1]), of.lost()
-    known = [(of.errors.get((kind, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
+    own = {"travels": "motion"}.get(kind, kind) if (kind, row.units[0]) not in of.errors else kind
+    known = [(of.errors.get((own, unit), 0.0), lost.get(unit, 0.0)) for unit in row.units]
     return min(map(max, known)) or np.nan
 
 

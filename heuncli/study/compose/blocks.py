@@ -180,7 +180,7 @@ def told_coupling(recovery: Recovery, own: CouplingLoads) -> dict[str, Any]:
         from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
 
         struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
-        block = TOLD[given.type](given, own.carried, struck) | block
+        block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
     if own.friction is not None:
         from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
 

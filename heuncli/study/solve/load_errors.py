@@ -19,8 +19,10 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
 from heuncli.integration.evaluator import Recovered
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
 from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
+from heuncli.kinetostatics.coordinates import coordinates
 from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
 from heuncli.kinetostatics.energy import energy
 from heuncli.kinetostatics.foundation import central_axis, total
@@ -29,7 +31,7 @@ from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
 from heuncli.mechanism.size import marks
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Estimate, Mask
-from heuncli.results_schema import BLOWS, BY_CAUSE
+from heuncli.results_schema import BLOWS, BY_CAUSE, TRAVELS
 from heuncli.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
@@ -117,7 +119,7 @@ class LoadErrors:
         if "energy" in self.compared:
             self.add_energy(several, states)
         if "motion" in self.compared:
-            self.add_motion(states)
+            self.add_motion(several, states)
 
     def add_loads(self, several: Recovered, states: CarriedStates, loads: Sequence[AppliedLoad]) -> None:
         """Loads of all kinds."""
@@ -167,7 +169,7 @@ class LoadErrors:
                 self.take(("strains", "m"), load.strain[:, 0], none, none)
                 self.take(("strains", "rad"), load.strain[:, 1], none, none)
 
-    def add_motion(self, states: BodyStates) -> None:
+    def add_motion(self, several: Recovered, states: BodyStates) -> None:
         """Velocities and accelerations: of the bodies, and of points as far from their centres as they reach.
 
         And what is told of the bodies beside.
@@ -187,6 +189,8 @@ class LoadErrors:
             ("m/s²", apart(states.a_centre) + (turning + centripetal) * self.reaches),
         ):
             self.extent("motion", unit).differ(difference.max(axis=1), self.before)
+        if any(JOINTS[joint.kind].follows_path for joint in self.setup.scene.mechanism.joints):
+            self.add_travels(several, states)
         if "motion" in self.setup.asked.reports:
             turned, vectors = turned_apart(states.R, count)
             self.extent("attitudes", "1").differ(turned, self.before)
@@ -194,6 +198,14 @@ class LoadErrors:
             none = np.zeros(len(states.R))
             for unit, values, rounding in moved_quantities(self.setup.scene.mechanism, states, self.setup.about):
                 self.take(("motion", unit), values, rounding, none)
+
+    def add_travels(self, several: Recovered, states: BodyStates) -> None:
+        """Travels, some of them along paths: in what the tables of these are over, which need not be their length."""
+        none = np.zeros(len(several.times))
+        for own in coordinates(self.setup.scene.layout, several, states).values():
+            if "travel" in own:
+                for name, unit in zip(TRAVELS, ("m", "m/s", "m/s²"), strict=True):
+                    self.take(("travels", unit), own[name], none, none)
 
     @cached_property
     def reaches(self) -> Array:
@@ -209,6 +221,8 @@ class LoadErrors:
             self.take(("reactions", "force"), np.stack([x.force for x in joints], axis=1), F, terms.force)
             self.take(("reactions", "moment"), np.stack([x.moment for x in joints], axis=1), M, terms.moment)
         none = np.zeros(len(F))
+        if joints and (coupled or any(JOINTS[load.joint.kind].follows_path for load in joints)):
+            self.take(("reactions", "place"), np.stack([x.point for x in joints], axis=1), none, none)
         of = {"force": (F, terms.force), "moment": (M, terms.moment), "place": (none, none), "angle": (none, none)}
         for name, values in coupled:
             self.take(("reactions", name), values, *of[name])
@@ -305,7 +319,9 @@ class LoadErrors:
     def errors(self) -> dict[tuple[str, str], float]:
         """The estimated errors by kind and unit, before the horizon."""
         of = {name: extent.claimed_error for name, extent in self.extents.items()}
-        found = {name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains", "axis")}
+        found = {
+            name: error for name, error in of.items() if name[0] in (*TOLD, "forces", "strains", "travels", "axis")
+        }
         whole = ("foundation", "effects", "elements")
         for kind, parts in (("reactions", ("reactions",)), ("sections", ("sections",)), ("foundation", whole)):
             for quantity, unit in (("force", "N"), ("moment", "N·m")):
