@@ -206,12 +206,15 @@ def mesh_of(given: c.Gear, carrier: int, first: GearMember, second: GearMember, 
         raise Finding(MISFIT, "both joints slide: there is nothing that rolls", "for two travels take type: ratio")
     if at is None and given.ratio is None and given.teeth is None:
         raise Finding(MISFIT, "neither ratio nor teeth nor the pitch point is given", "give one of ratio, teeth, at")
+    make = _rack
     if first.turns and second.turns:
-        n = cross(first.axis, second.axis)
-        if _length(n) <= tolerances.TYPED_AXES:
-            return _parallel(given, carrier, first, second, at)
-        return _bevel(given, carrier, first, second, at)
-    return _rack(given, carrier, first, second, at)
+        make = _parallel if _length(cross(first.axis, second.axis)) <= tolerances.TYPED_AXES else _bevel
+    mesh = make(given, carrier, first, second, at)
+    for wheel in (first, second):
+        if wheel.turns and _length(inward(wheel, mesh)) <= tolerances.TYPED_POINT * _length(wheel.point - mesh.P):
+            raise Finding(MISFIT, "the pitch point lies on the axis of a gear, or the pitch cone of one is flat: which "
+                          "way its teeth push it is not known", "correct axes, ratio or pitch point")  # fmt: skip
+    return mesh
 
 
 def _ratio(given: c.Gear, first: GearMember, second: GearMember, external: float) -> float:
@@ -335,18 +338,19 @@ def line_of_action(given: c.Gear, mesh: GearMesh) -> tuple[Array, Array]:
 
 def away(mesh: GearMesh) -> Array:
     """The direction, a unit vector, in which flanks push the second gear: out of the first one's teeth."""
-
-    def inward(m: GearMember) -> Array:
-        arm = -m.arm(mesh.P)
-        return arm - (arm @ mesh.w) * mesh.w
-
     if not mesh.second.turns:
-        return -_unit(inward(mesh.first))
+        return -_unit(inward(mesh.first, mesh))
     if not mesh.first.turns:
-        return _unit(inward(mesh.second))
-    one, other = inward(mesh.first), inward(mesh.second)
+        return _unit(inward(mesh.second, mesh))
+    one, other = inward(mesh.first, mesh), inward(mesh.second, mesh)
     ring = one @ other > 0.0 and one @ one < other @ other  # the second one is: its teeth are inside
     return -_unit(one) if ring else _unit(other)
+
+
+def inward(wheel: GearMember, mesh: GearMesh) -> Array:
+    """From the pitch point to the axis of a wheel, across the line along which the teeth touch."""
+    arm = -wheel.arm(mesh.P)
+    return np.asarray(arm - (arm @ mesh.w) * mesh.w)
 
 
 def _length(a: Array) -> float:

@@ -10,7 +10,7 @@ LONG_TITLE = Addition(
     "An error",
     {
         "heuncli/spec/rules/every.py": (
-            Edit("    stops,\n)\n", "    stops,\n    titles,\n)\n"),
+            Edit("    threads,\n)\n", "    threads,\n    titles,\n)\n"),
             Edit("expect, curves, not_yet,\n", "expect, curves, not_yet, titles,\n"),
         ),
     },

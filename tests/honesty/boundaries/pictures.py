@@ -13,6 +13,7 @@ from heuncli.pictures.planes import plane_of, plane_seen_along
 from heuncli.pictures.polar_words import notes_of
 from heuncli.pictures.pulls import pulls_of
 from heuncli.pictures.refusals import NotDrawable
+from heuncli.pictures.scenes import poses_of, standing
 from heuncli.pictures.tips import Largest, TipCurve
 from heuncli.pictures.turning import TurnedVectors, TurningRun, turning_of
 from heuncli.report.table_units import Units
@@ -71,7 +72,9 @@ def from_turn_to_turn(x: float) -> str:
 def carried(x: float) -> str:
     """A bar whose weight, but for x of it, a distributed load carries."""
     load = f"{{type: distributed, on: bar, from: top, to: end, vector: [0, 0, {WEIGHT * (1.0 - x)!r}]}}"
-    pulls = pulls_of(study(bar(tail=f"forces: {{f: {load}}}", kind="weld")), 0.0).all
+    run = study(bar(tail=f"forces: {{f: {load}}}", kind="weld"))
+    poses = poses_of(run, np.zeros(1))
+    pulls = pulls_of(run, standing(run.setup.scene, run.spec, poses, None, Units()).machine, poses).all
     if not pulls:
         return "nothing"
     (pull,) = pulls
