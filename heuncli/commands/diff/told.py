@@ -11,8 +11,8 @@ from heuncli.report.export import dump
 from heuncli.report.plurals import count
 from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
 from heuncli.report.workflow_lines import Annotation, lines
+from heuncli.telling.change import Change
 from heuncli.telling.change_words import difference_text, number_text
-from heuncli.telling.changes import Change
 
 HEADS = ("of", "at", "before", "after", "change", "allowed")
 MOST_ROWS = 200  # of a table; JSON holds all

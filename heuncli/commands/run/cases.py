@@ -36,7 +36,7 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
         study, pieces = solved(task, one)
         told[name] = "".join(pieces)
         if not (task.asked or task.counted):
-            runs[name] = keep(study, task.what.reports)
+            runs[name] = keep(study, task.what.reports, whole_course=False)
         codes.append(leave(task, one, study, f"heun: case {name}"))
     emit(_text(task, cases, told, runs), task.request.output)
     say_what_stays(task.request.units, "--measure" if task.asked else task.form, task.request.quiet)
