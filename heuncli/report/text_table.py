@@ -7,6 +7,7 @@ from typing import Literal
 
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
+from heuncli.report.markdown_text import escape_line, escape_markdown
 from heuncli.wrapping import wrapped
 
 GAP = "  "
@@ -70,16 +71,16 @@ def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
 
 def markdown(table: TextTable) -> str:
     """The table as markdown; the lines across become rows with a bold first cell."""
-    lines = [f"### {_escape(table.heading)}", ""] if table.heading else []
+    lines = [f"### {escape_line(table.heading)}", ""] if table.heading else []
     if table.columns:
         lines.append(_markdown_row(column.head for column in table.columns))
         lines.append(_markdown_row("---" if column.align == "left" else "---:" for column in table.columns))
         blank = [""] * (len(table.columns) - 1)
         for row in table.rows:
-            lines.append(_markdown_row([f"**{row}**", *blank] if isinstance(row, str) else row))
+            lines.append(_markdown_row([row, *blank], bold=True) if isinstance(row, str) else _markdown_row(row))
         lines.append("")
     for note in table.notes:
-        lines += [_escape(note), ""]
+        lines += [escape_line(note), ""]
     return "\n".join(lines)
 
 
@@ -119,9 +120,6 @@ def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TextCol
     return (indent + GAP.join(padded)).rstrip()
 
 
-def _markdown_row(cells: Iterable[str]) -> str:
-    return "| " + " | ".join(_escape(cell) for cell in cells) + " |"
-
-
-def _escape(text: str) -> str:
-    return shown(text).replace("|", "\\|")
+def _markdown_row(cells: Iterable[str], *, bold: bool = False) -> str:
+    texts = map(escape_markdown, cells)
+    return "| " + " | ".join(f"**{text}**" if bold and text else text for text in texts) + " |"
