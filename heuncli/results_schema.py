@@ -180,7 +180,7 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
-    *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
+    *at("joints.JOINT", "mean pressure of its `bearing`: force, with an axis `radial`, / (diameter · width)", scalar("pressure", "Pa")),
     *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
     *at("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
