@@ -38,6 +38,11 @@ class TextTable(NamedTuple):
     rows: tuple[tuple[str, ...] | str, ...] = ()
     notes: tuple[str, ...] = ()
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands below the heading."""
+        return not self.rows and not self.notes
+
 
 def head(label: str, unit: str) -> str:
     """What stands above a column of numbers."""
@@ -46,6 +51,8 @@ def head(label: str, unit: str) -> str:
 
 def plain(table: TextTable, width: int | None = None) -> str:
     """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
+    if table.is_empty:
+        return ""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
     lines = wrapped(shown(table.heading), width) if table.heading else []
     if table.columns:
@@ -71,6 +78,8 @@ def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
 
 def markdown(table: TextTable) -> str:
     """The table as markdown; the lines across become rows with a bold first cell."""
+    if table.is_empty:
+        return ""
     lines = [f"### {escape_line(table.heading)}", ""] if table.heading else []
     if table.columns:
         lines.append(_markdown_row(column.head for column in table.columns))
