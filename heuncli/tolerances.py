@@ -187,6 +187,7 @@ START_ROUNDING = 8.0 * EPS  # of a state's numbers: typed digits, assembling, an
 ROUNDING_MATTERS = 5e-10  # local tolerance: errors are some 1e-3 of it, and then no more than 300 START_ROUNDING
 SUM_ROUNDING = 16.0 * EPS  # of the largest term: sums of some dozen terms, and what their own roundings add up to
 UNKNOWN = 1e6  # an error relative to what it is an error of, where that is without bound or not a number
+FRICTION_LACKS = 1e-6  # of its value: smoothed friction that lacks less is full to the six digits of a table
 WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
 LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps

@@ -23,7 +23,7 @@ from heuncli.client_report.parts import ReportCell, ReportTable, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
-from heuncli.report.extremes_tables import MANY, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.report.extremes_tables import MANY, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.envelopes import Bound
 
@@ -166,10 +166,20 @@ def _of_cases(
         case = [run.told] if of.has_cases else []
         texts = one.texts[run.name]
         error = "" if texts == (OPEN, OPEN) else rough(ends.error * one.size)
-        cells = _cells(of, run, ends, texts, bold, along=along)
+        cells = _cells(of, run, ends, _marked(run, one, ends, texts), bold, along=along)
         label = lead[0] + PARTLY * ends.parts_open
         yield (ReportCell(label), ReportCell(lead[1]), *map(ReportCell, case), *cells, ReportCell(error))
         lead = ["", ""]
+
+
+def _marked(run: ReportedRun, one: WrittenRow, ends: Ends, texts: tuple[str, str]) -> tuple[str, str]:
+    """The texts with a mark where smoothed friction is not at its value at their instants."""
+    if texts[0] == texts[1]:
+        return texts
+    kind = one.row.path.split(".")[0]
+    both = zip(texts, (ends.low, ends.high), strict=True)
+    low, high = (text if end.at is None else run.doubted.mark(text, end.at, kind, ends.unit) for text, end in both)
+    return low, high
 
 
 def _texts(ends: Ends, how: Style, size: float) -> tuple[str, str]:
@@ -213,3 +223,5 @@ def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator
         yield UNKNOWN_NOTE
     if any(cell.text.endswith(PARTLY) for cell in cells):
         yield PARTLY_OPEN_NOTE
+    if any(cell.text.endswith(MARK) for cell in cells):
+        yield from dict.fromkeys(run.doubted.note for run in of.runs if run.doubted.note)

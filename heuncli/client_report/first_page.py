@@ -12,6 +12,7 @@ from heuncli.client_report.load_groups import joining_forces
 from heuncli.client_report.parts import Facts, Mood, Part, Sentence, some
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
+from heuncli.report.extremes_tables import MARK
 from heuncli.report.impulse_tables import sizes_of
 from heuncli.report.plurals import count
 from heuncli.version import VERSION
@@ -138,9 +139,17 @@ def _largest(of: Reported) -> Iterator[Sentence]:
         if most is not None and (told is None or most.high.value > told.high.value + told.error):
             told, known = most, _known(of, some_paths)
             yield Sentence(f"Largest {what}{known}: {most.high_text()} in {most.name}{most.where}.")
+            yield from _near_rest(of, most)
     if whole is not None:
         known = _known(of, ["foundation.force"])
         yield Sentence(f"Largest force on the foundation{known}: {whole.high_text()}{whole.where}.")
+
+
+def _near_rest(of: Reported, most: GreatestOfCases) -> Iterator[Sentence]:
+    """That a number stands where smoothed friction is not at its value."""
+    run = next((run for run in of.runs if run.name == most.high.case), None)
+    if run is not None and most.at and most.high.at in run.doubted.instants:
+        yield Sentence(f"There, {run.doubted.note.removeprefix(f'{MARK} ')}.", "unsure")
 
 
 def _struck(of: Reported) -> Iterator[Sentence]:
