@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -156,11 +157,23 @@ def _written(checked: Sequence[Checked], request: CheckRequest) -> list[int]:
             say("heun: no golden file was written: one that stands there cannot be used")
         return []
     for golden in given:
-        try:
-            Path(golden.path).parent.mkdir(parents=True, exist_ok=True)
-        except OSError as reason:
-            raise OutputError(files.failed(golden.path, reason)) from None
-        files.write(as_bytes(golden.text or ""), golden.path)
+        _write_golden(golden.path, as_bytes(golden.text or ""))
         if not request.quiet:
             say(f"heun: {shown(golden.path)} {'written' if golden.is_new else 'written anew'}")
     return []
+
+
+def _write_golden(path: str, content: bytes) -> None:
+    """Write a golden file, with the folders above it; where it cannot be written no new folder is left empty."""
+    missing = [folder for folder in Path(path).parents if not folder.exists()]
+    try:
+        try:
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
+        except OSError as reason:
+            raise OutputError(files.failed(path, reason)) from None
+        files.write(content, path)
+    except OutputError:
+        for folder in missing:  # the innermost first
+            with contextlib.suppress(OSError):  # it was never made, or another file stands in it
+                folder.rmdir()
+        raise
