@@ -8,7 +8,6 @@ estimated by a second rule.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
@@ -191,13 +190,13 @@ def spread_of_instant(times: Array, heights: Array, best: float, at: float, marg
     return float(max(at - first, last - at))
 
 
-def near_jumps(instants: Array, jumps: Sequence[float], uncertain: Sequence[float]) -> Mask:
+def near_jumps(instants: Array, jumps: Array, uncertain: Array) -> Mask:
     """Whether instants lie so near to a jump that its side is not certain; uncertain [s]: of each jump."""
     near = np.zeros(instants.shape, dtype=bool)
     if not len(jumps):
         return near
     order = np.argsort(jumps)
-    at, off = np.asarray(jumps)[order], np.asarray(uncertain)[order]
+    at, off = jumps[order], uncertain[order]
     after = np.searchsorted(at, instants)
     for k in (np.clip(after - 1, 0, len(at) - 1), np.clip(after, 0, len(at) - 1)):
         near |= np.abs(instants - at[k]) <= off[k]

@@ -138,7 +138,7 @@ def _whole_course(
     near = near_jumps(uneven, jumps.times, jumps.errors) | beyond
     sums = {path: sum_tenths(own[n:m].reshape(uneven.shape), near) for path, own in values.items()}
     if horizon is not None:
-        sums = {path: own.ended(beyond.any(axis=1)) for path, own in sums.items()}
+        sums = {path: own.ended(np.asarray(beyond.any(axis=1))) for path, own in sums.items()}
     if sampled is not None and len(pieces.first):
         paths = [column.path for column in columns_of(study.results, scope)]
         inner = np.stack([values[path][m:].reshape(-1, GAUSS.size) for path in paths], axis=2)

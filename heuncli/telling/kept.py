@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from heuncli.errors import Finding
 
-FORMAT = 2  # of the file that is written
+FORMAT: Final = 2  # of the file that is written
 READABLE = (1, 2)  # a reader of another says so
 MOST_BYTES = 64_000_000
 OPEN: Final = "open"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,7 @@ def test_a_start_from_rest_says_that_friction_is_nothing_there(heun: Heun, folde
     told = json.loads(heun("run", "s.yaml", "--measure", MEASURE, "--format", "json").stdout)
     assert "rub" in told["notes"][0]
     table = heun("run", "s.yaml", "--only", "motion").stdout
-    assert "4.175†" in table or "4.1750†" in table
+    assert re.search(r"4\.1750*†", table)
     assert "† smoothed friction (rub) is not at its value there" in table
     result = json.loads(heun("run", "s.yaml", "--format", "json").stdout)
     assert any("at 1 of 11 instants" in note for note in result["model"]["notes"])
