@@ -17,7 +17,6 @@ from heuncli.mechanism.model import JointLoad, Mechanism, ThreadLoad
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 
-FULL_FROM = math.atanh(1.0 - tolerances.FRICTION_LACKS)  # times its `speed`: the rate from which on friction is full
 MOST_NAMED = 3
 # what hangs on friction at an instant: loads and accelerations, and no place, velocity or energy
 KINDS = frozenset({"joints", "foundation", "sections", "stops", "couplings", "system_vector"})
@@ -35,6 +34,11 @@ class PartialFriction(NamedTuple):
     def share(self) -> float:
         """Of its value, 0 to 1."""
         return math.tanh(abs(self.rate) / self.speed)
+
+
+def full_from() -> float:
+    """The rate from which on friction is full, times its `speed`."""
+    return math.atanh(1.0 - tolerances.FRICTION_LACKS)
 
 
 def has_smoothed_friction(mechanism: Mechanism) -> bool:
@@ -61,7 +65,7 @@ def partial_friction_at(mechanism: Mechanism, recovered: Recovered) -> dict[floa
         if not isinstance(load, JointLoad | ThreadLoad) or not _is_smoothed(load):
             continue
         rates: Array = np.abs(recovered.loads[:, own]["rate"]).max(axis=1)
-        for k in np.flatnonzero(rates < FULL_FROM * load.speed).tolist():
+        for k in np.flatnonzero(rates < full_from() * load.speed).tolist():
             partial = PartialFriction(load.name, float(rates[k]), load.speed)
             found.setdefault(float(recovered.times[k]), []).append(partial)
     return found
@@ -81,11 +85,11 @@ def describe_partial(partial: Sequence[PartialFriction]) -> str:
     """Which friction is not at its value, and how far from it."""
     told = [f"{own.name} is at {100.0 * own.share:.3g} % of its value" for own in partial[:MOST_NAMED]]
     more = f" and {len(partial) - MOST_NAMED} more" if len(partial) > MOST_NAMED else ""
-    return f"smoothed friction {', '.join(told)}{more}: the rate is below {FULL_FROM:.3g} times its `speed`"
+    return f"smoothed friction {', '.join(told)}{more}: the rate is below {full_from():.3g} times its `speed`"
 
 
 def note_of_partial(found: dict[float, list[PartialFriction]]) -> str:
     """What the mark beside numbers means, with the names of what rubs."""
     names = dict.fromkeys(own.name for partial in found.values() for own in partial)
     some = ", ".join(list(names)[:MOST_NAMED]) + (" ..." if len(names) > MOST_NAMED else "")
-    return f"smoothed friction ({some}) is not at its value there: rate below {FULL_FROM:.3g} times its `speed`"
+    return f"smoothed friction ({some}) is not at its value there: rate below {full_from():.3g} times its `speed`"
