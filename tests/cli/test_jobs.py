@@ -49,7 +49,7 @@ def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypa
     monkeypatch.setattr(command, "check", dying)
     done = heun("check", "many", "--jobs", "3", "--format", "json")
     assert done.returncode == 70
-    assert "many/04.yaml: the process that checked it was killed by signal 9 [bug]" in done.stderr
+    assert "many/04.yaml: the process that checked it was killed by signal 9, twice [bug]" in done.stderr
     assert done.stdout.count('"file"') == 12
 
 
