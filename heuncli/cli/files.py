@@ -135,7 +135,8 @@ def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
                 _lock(number)
                 write_pieces(number, pieces)
                 if place.state is not None:
-                    os.chmod(number if os.chmod in os.supports_fd else temporary, stat.S_IMODE(place.state.st_mode))  # noqa: PTH101
+                    which = number if os.chmod in os.supports_fd else temporary
+                    os.chmod(which, stat.S_IMODE(place.state.st_mode))  # noqa: PTH101
                 os.fsync(number)
                 is_placed = not is_named and place.state is None and _link(number, folder, name)
                 if not is_placed and not is_named:
