@@ -15,7 +15,6 @@ import pytest
 from heuncli.cli import jobs
 from heuncli.commands.check import command
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
-from tests.shared.processes import heard
 
 
 @pytest.fixture
@@ -99,10 +98,9 @@ def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> N
         text = HANGING.replace("top: [0, 0, 0]}", "top: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}")
         (tmp_path / f"{number}.yaml").write_text(text + "analysis: {duration: 100000, samples: 11}\n")
     words = [sys.executable, "-m", "heuncli", "check", ".", "--jobs", "2", "--golden", "g", "--update", "--force"]
-    with heard():
-        process = subprocess.Popen(
-            words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
-        )
+    process = subprocess.Popen(
+        words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    )
     with process:
         time.sleep(1.5)
         os.killpg(process.pid, signal.SIGINT)

@@ -29,12 +29,10 @@ key=$(dd bs=1 count=1 2> /dev/null < /dev/tty)
 printf "took $key" > /dev/tty
 stty echo icanon < /dev/tty
 """
-# The command as the leader of a terminal's session, whatever signals the tests ignore.
+# The command as the leader of a terminal's session.
 LEADER = """\
-import fcntl, os, signal, sys, termios
+import fcntl, os, sys, termios
 fcntl.ioctl(0, termios.TIOCSCTTY, 0)
-for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
-    signal.signal(number, signal.SIG_DFL)
 os.execv(sys.executable, [sys.executable, "-m", "heuncli", *sys.argv[1:]])
 """
 

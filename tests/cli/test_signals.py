@@ -49,15 +49,11 @@ main()
 
 def shot(number: int, where: str, folder: Path) -> subprocess.CompletedProcess[str]:
     """`heun run hanging.yaml -o out.json`, and what became of it."""
-    signal_was = signal.signal(signal.SIGINT, signal.default_int_handler)  # what is ignored is ignored by children, too
-    try:
-        return subprocess.run(
-            [sys.executable, "-c", SHOT, str(int(number)), where, "run", "hanging.yaml", "-o", "out.json"],
-            capture_output=True, text=True, cwd=folder, timeout=60, check=False,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-        )  # fmt: skip
-    finally:
-        signal.signal(signal.SIGINT, signal_was)
+    return subprocess.run(
+        [sys.executable, "-c", SHOT, str(int(number)), where, "run", "hanging.yaml", "-o", "out.json"],
+        capture_output=True, text=True, cwd=folder, timeout=60, check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("where", ["heuncli.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
