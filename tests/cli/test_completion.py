@@ -30,7 +30,7 @@ def asked(shell: str, line: str, folder: Path) -> list[str]:
     own = {"bash": {"COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)},
            "zsh": {"_TYPER_COMPLETE_ARGS": line},
            "fish": {"_TYPER_COMPLETE_ARGS": line, "_TYPER_COMPLETE_FISH_ACTION": "get-args"}}[shell]  # fmt: skip
-    env = {**os.environ, "_HEUN_COMPLETE": f"complete_{shell}", **own}
+    env = {**os.environ, "_HEUN_COMPLETE": f"complete_{shell}", "COLUMNS": "20", **own}  # of any terminal
     done = subprocess.run([sys.executable, "-m", "heuncli"], cwd=folder, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     if shell == "zsh":
