@@ -312,7 +312,7 @@ def _varies(values: Array) -> Mask:
 
 def sides_of_jumps(times: Array) -> Mask:
     """Which neighbouring instants are the two sides of a jump: no farther apart than rounding, (n_t - 1,)."""
-    return np.asarray(times[1:] - times[:-1] <= 8.0 * tolerances.EPS * np.abs(times[1:]))
+    return np.asarray(times[1:] - times[:-1] <= 2.0 * MOST_EQUAL * tolerances.EPS * np.abs(times[1:]))
 
 
 def filled(times: Array) -> Array:
