@@ -93,7 +93,7 @@ def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float
 def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
     """The blows that are given at instants within [0, last], ascending; those of one instant together.
 
-    One instant is also what rounding does not tell apart: where the last instant before the one is not behind the other.
+    One instant is also what rounding does not tell apart: where one begins before the other has ended.
     """
     given = [
         GivenBlow(before, after, (), {law.owner: (first, then)})

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.discontinuities import MOST_EQUAL
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Extremes, Indices, Mask, Results
 from heuncli.study.search.intervals import FOURTH, Intervals, ceiling, completed, joined, promised
