@@ -14,7 +14,7 @@ import numpy as np
 from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.segments import just_after, just_before
+from heuncli.integration.segments import just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Blows as Answered
@@ -39,6 +39,15 @@ class GivenBlow:
     after: float
     blows: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
+
+    def is_due(self, t: float) -> bool:
+        """Whether a run that goes on from an instant t [s] has it behind itself."""
+        return self.before < t or self.after <= t
+
+    def with_other(self, other: GivenBlow) -> GivenBlow:
+        """Both together; `other` begins with it, or later."""
+        drives = {**self.drives, **other.drives}
+        return GivenBlow(self.before, max(self.after, other.after), (*self.blows, *other.blows), drives)
 
     def names(self, mechanism: Mechanism) -> tuple[str, ...]:
         """The names of what acts."""
@@ -78,25 +87,30 @@ class Jump:
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
     """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
-    return jumps(value, just_after(last), order=1) if value.time_dependent else []
+    return jumps(value, last, order=1) if value.time_dependent else []
 
 
 def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
-    """The blows that are given at instants within [0, last], ascending; those of one instant together."""
-    at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
-    befores: dict[float, float] = {}
-    for law in mechanism.laws:
-        for before, after, first, then in rate_jumps(law.value, last):
-            befores[after] = before
-            at.setdefault(after, ([], {}))[1][law.owner] = (first, then)
-    for i, blow in enumerate(mechanism.blows):
-        if blow.when is not None:
-            continue  # struck where that becomes true (run/triggers.py)
-        with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
-        at.setdefault(with_drive, ([], {}))[0].append(i)
-    return [
-        GivenBlow(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
+    """The blows that are given at instants within [0, last], ascending; those of one instant together.
+
+    One instant is also what rounding does not tell apart: where one begins before the other has ended.
+    """
+    given = [
+        GivenBlow(before, after, (), {law.owner: (first, then)})
+        for law in mechanism.laws
+        for before, after, first, then in rate_jumps(law.value, last)
     ]
+    for i, blow in enumerate(mechanism.blows):
+        if blow.when is None:  # else it is struck where that becomes true (run/triggers.py)
+            before = just_before(blow.time) if blow.time > 0.0 else 0.0
+            given.append(GivenBlow(before, blow.time, (i,), {}))
+    found: list[GivenBlow] = []
+    for one in sorted(given, key=lambda one: one.before):
+        if (found and one.before < found[-1].after) or (found and one.after == found[-1].after):
+            found[-1] = found[-1].with_other(one)
+        else:
+            found.append(one)
+    return found
 
 
 @record

@@ -44,7 +44,7 @@ class Interruptions:
         The rope, if there is one, that would have to push in one of them: the run then ends before it. Raises
         SolveError if that is the start.
         """
-        while self.due and self.due[0].after <= t:
+        while self.due and self.due[0].is_due(t):
             jump = self.meet(self.due.pop(0), reached)
             if jump is None:
                 continue

@@ -121,7 +121,7 @@ def begin(setup: Setup) -> tuple[float, ...]:
     first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, float(setup.spec.analysis.times[-1])))
     require_steps(len(jumps) + 1, setup.method)
     return jumps
 
