@@ -27,7 +27,7 @@ from heuncli.joint_kinds import JOINTS, RATES
 from heuncli.kinetostatics.actions import applied_loads
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.mechanism.model import JointLoad, Load, PointLoad, RopeLoad
+from heuncli.mechanism.model import JointLoad, Load, PairLoad, PointLoad
 from heuncli.nearest import did_you_mean
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -35,6 +35,7 @@ from heuncli.results import Array
 CODE = "no-state-space"
 UNIT = Expression.of(1.0)
 AXES = "xyz"
+NO_INPUTS = "this scene has no input: forces, couples, torques, actuators and drives are inputs; bushings are none"
 
 
 @record
@@ -180,6 +181,7 @@ def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
     """The inputs asked for; by default all loads that have one value. Raises SolveError for a name of neither."""
     forces = [load.name for load in at.freed.layout.mechanism.loads if has_value(load)]
     drives = {drive_name(at, name): name for name, is_driven in zip(by.names, by.driven, strict=True) if is_driven}
+    drives = {f"drives.{name}" if name in forces else name: coordinate for name, coordinate in drives.items()}
     if not asked:
         loads = at.freed.layout.mechanism.loads
         plain = [own.name for own in loads if not isinstance(own, PointLoad) or direction(own) is not None]
@@ -190,7 +192,7 @@ def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
         raise SolveError(*(
             Problem(
                 CODE, f"--inputs {name}: no force with a value and no drive is called so",
-                hint=did_you_mean(name, known, "inputs") or "forces, couples, torques and actuators have values",
+                hint=did_you_mean(name, known, "inputs") if known else NO_INPUTS,
             )
             for name in wrong
         ))  # fmt: skip
@@ -205,10 +207,13 @@ def drive_name(at: Instant, coordinate: str) -> str:
 
 
 def has_value(load: Load) -> bool:
-    """Whether a load is told by values."""
-    return bool(load.values) and not (
-        isinstance(load, RopeLoad) or (isinstance(load, PointLoad) and load.spread is not None)
-    )
+    """Whether a load has one value, a force or torque, of which an input is a change.
+
+    Springs and dampers by numbers, bushings, ropes, threads and distributed loads have none.
+    """
+    if isinstance(load, PointLoad):
+        return load.spread is None
+    return isinstance(load, PairLoad | JointLoad) and load.value is not None
 
 
 def direction(load: PointLoad) -> Array | None:
