@@ -1,4 +1,4 @@
-"""How velocities change with a displacement while the rates of the chosen coordinates stay: (dv/dq) q' of a state space.
+"""How velocities change with a displacement at fixed rates of the chosen coordinates: (dv/dq) q' of a state space.
 
     v = row(q) q',   dv = row dq' + (d row/dq q') dq
 The kernel differentiates angular velocities and velocities of all bodies along displacements of the tree, at fixed
@@ -48,14 +48,12 @@ class RateSlopes:
     def of_joint(self, joint: Joint, quantity: str) -> Array:
         """The change (f,) of the rate of an angle, or of the speed of a travel."""
         turn_a, spin_a, omega_a, attitude = self._carrier(joint.a)
-        turn_b, spin_b, omega_b, _ = self._carrier(joint.b)
+        _, spin_b, omega_b, _ = self._carrier(joint.b)
         n = attitude @ joint.axis
         if quantity == "angle":
             return np.asarray(np.cross(turn_a, n[:, None], axis=0).T @ (omega_b - omega_a) + n @ (spin_b - spin_a))
         place = self._place(joint.b, joint.q)
-        k = None if joint.b == GROUND else self.layout.place[joint.b]
-        arm = None if k is None else (place - self.found.centres[k])[:, None]
-        shift = np.zeros(turn_a.shape) if k is None else self.shifts[k] + np.cross(self.turns[k], arm, axis=0)
+        shift = self._carried(joint.b, place)
         change = self.of_point(joint.b, place) - self.of_point(joint.a, place, shift)
         speed = self._velocity(joint.b, place) - self._velocity(joint.a, place)
         seen = change - np.cross(turn_a, speed[:, None], axis=0)  # by what turns with the carrier
