@@ -1,4 +1,4 @@
-"""State spaces of random trees and loops that move, by differences of solved states: state_space_slopes.py beside it."""
+"""State spaces that move, by differences of solved states: state_space_slopes.py beside it."""
 
 from __future__ import annotations
 

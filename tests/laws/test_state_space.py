@@ -117,7 +117,7 @@ analysis: {type: state}
 
 
 def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
-    """z = L exp(i p) + c exp(i (p + q)) of a double pendulum's tip: dz'/dp = i z', dz'/dq = -(p' + q') c exp(i (p + q))."""
+    """z = L exp(i p) + c exp(i (p + q)) of the tip: dz'/dp = i z', dz'/dq = -(p' + q') c exp(i (p + q))."""
     spec = load("scene.yaml", PENDULUM)
     outputs = ("b.tip.x", "b.tip.y", "b.tip.vx", "b.tip.vy")
     space = told(spec, instant_of(spec, None, None), LagrangeQuestion(state_space=True, outputs=outputs)).state_space
