@@ -392,7 +392,8 @@ class Assembly:
 
     position (n, 3) and velocity (n, 3) of the bodies' origins, rotation (n, 3, 3), angular_velocity (n, 3);
     chosen: sentences on what was chosen for the user; gap: largest closure gap [m]; moved: the bodies that had to leave
-    the place in which they are drawn, each with its way.
+    the place in which they are drawn, each with its way; started: sentences on velocities that nothing in the spec
+    asks for, or that one may expect otherwise.
     """
 
     position: Array
@@ -402,3 +403,4 @@ class Assembly:
     chosen: tuple[str, ...]
     gap: float
     moved: tuple[str, ...] = ()
+    started: tuple[str, ...] = ()

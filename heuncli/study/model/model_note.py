@@ -41,6 +41,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
     }  # fmt: skip
     if scene.start.moved:
         block["moved"] = list(scene.start.moved)
+    if scene.start.started:
+        block["started"] = list(scene.start.started)
     if mechanism.planar:
         block["plane"] = "declared"
     if mechanism.couplings:
