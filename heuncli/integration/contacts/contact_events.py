@@ -22,7 +22,7 @@ from heuncli.integration.contacts.blows import (
 )
 from heuncli.integration.contacts.latches import UNWATCHED, Bolts, Catch, Latches, with_catches, work_of_catches
 from heuncli.integration.contacts.resting import rests, short_flights, undecided_by_friction
-from heuncli.integration.contacts.restitution import Struck, feels, strikes, undecided
+from heuncli.integration.contacts.restitution import Struck, feeling, strikes, undecided
 from heuncli.integration.contacts.sequential_impacts import EndlessImpacts, endless_impacts, independent
 from heuncli.integration.contacts.shared_impulses import (
     LoadedContact,
@@ -272,7 +272,9 @@ class Contacts:
         ]
         contacts += loaded(held_contacts(self.layout), outcome.columns.multipliers)
         felt = np.zeros((len(contacts), len(contacts)), dtype=bool)
-        felt[: len(own), : len(own)] = feels(pressed.A[np.ix_(own, own)])
+        for group in feeling(pressed.A):  # also over contacts that bear nothing, which is a matter of the model, too
+            members = np.isin(own, group)
+            felt[: len(own), : len(own)] |= members[:, None] & members
         return tuple(find_shared_impulses(contacts, felt, outcome.columns.multipliers))
 
     def require_decided(self, t: float, after: Array, pressed: Pressed, holding: Array, rate: Array) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.complementarity import Pivots, complementary
-from heuncli.integration.contacts.sequential_impacts import EndlessImpacts, strike_in_sequence
+from heuncli.integration.contacts.sequential_impacts import EndlessImpacts, feels, strike_in_sequence
 from heuncli.integration.contacts.touching import Touching, spread
 from heuncli.records import fields, record
 from heuncli.results import Array, Indices, Mask
@@ -67,12 +67,6 @@ def strikes(
         for name, values in fields(part).items():
             getattr(found, name)[own] = values
     return found
-
-
-def feels(A: Array) -> Mask:
-    """Whether the impulse of one contact changes the rate of the other, (k, k)."""
-    size = np.sqrt(np.maximum(np.diag(A), 0.0))
-    return np.asarray(np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size)
 
 
 def feeling(A: Array) -> list[Indices]:
