@@ -429,7 +429,11 @@ def names_shares(words: list[str]) -> bool:
         return names_shares(words[2:])
     if words[:1] == ["foundation"]:
         inner = words[1:2] in (["supports"], ["elements"])  # a name behind them may have its block before it
-        return SHARES in words[3 : 5 if words[2:3] in (["drives"], ["couplings"]) else 4] if inner else words[1:2] == [SHARES]
+        return (
+            SHARES in words[3 : 5 if words[2:3] in (["drives"], ["couplings"]) else 4]
+            if inner
+            else words[1:2] == [SHARES]
+        )
     return words[2:3] == [SHARES]
 
 

@@ -22,7 +22,12 @@ from heuncli.shapes.by_component import cross, instants_first, turned
 from heuncli.shapes.rotations import cross_rows
 
 ElementKeys = Mapping[tuple[str, str], str]  # of `foundation.elements`, by block of the spec and name
-BLOCK_OF = {"load": "forces", "drive": "drives", "stop": "stops", "coupling": "couplings"}  # of a spec, by kind of action
+BLOCK_OF = {
+    "load": "forces",
+    "drive": "drives",
+    "stop": "stops",
+    "coupling": "couplings",
+}  # of a spec, by kind of action
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
@@ -116,7 +121,11 @@ def element_keys(mechanism: Mechanism) -> ElementKeys:
     standing = [
         (mechanism.block_of(load), load.name)
         for load in mechanism.loads
-        if (load.joint in grounded if isinstance(load, JointLoad) else GROUND in (getattr(load, "a", 0), getattr(load, "b", 0)))
+        if (
+            load.joint in grounded
+            if isinstance(load, JointLoad)
+            else GROUND in (getattr(load, "a", 0), getattr(load, "b", 0))
+        )
     ]
     drives = ((joint.drive, JOINTS[joint.kind]) for k, joint in enumerate(mechanism.joints) if k in grounded)
     standing += [("drives", drive.name) for drive, kind in drives if drive is not None and not kind.keeps_distance]

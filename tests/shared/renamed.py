@@ -81,7 +81,9 @@ def neutral(tree: Tree) -> NeutralSpec:
         return _renamed(path, value, mark)
 
     text = json.dumps(told((), tree), ensure_ascii=False, indent=1)
-    return NeutralSpec(text.replace("\\u0000", "\x00").replace("\\u0001", "\x01"), {n: frozenset(b) for n, b in blocks.items()})
+    return NeutralSpec(
+        text.replace("\\u0000", "\x00").replace("\\u0001", "\x01"), {n: frozenset(b) for n, b in blocks.items()}
+    )
 
 
 def _key(path: tuple[str, ...], key: str, mark: Callable[[str], str]) -> str:
@@ -118,7 +120,8 @@ def _of_path(words: Sequence[str], mark: Callable[[str], str]) -> Iterator[str]:
         return
     names = {"points": 2, "foundation": 0}.get(block, 1)
     for place, word in enumerate(rest):
-        named = place < names or rest[place - 1 : place] and rest[place - 1] in NAMES_BEHIND and place > names - 1
+        behind = place > max(names - 1, 0) and rest[place - 1] in NAMES_BEHIND
+        named = place < names or behind
         yield mark(word) if named else word
 
 

@@ -153,7 +153,8 @@ def shared_name(draft: DraftDocument) -> Iterator[Violation]:
     loads = [name for name, own in couplings.items() if isinstance(own, fc.ScrewEntry | fc.RopeEntry) and has_load(own)]
     beside: dict[str, dict[str, Collection[str]]] = {
         "impulses": {"joints": joints, "couplings": struck, "drives": entries["drives"]},
-        "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")} | {"couplings": struck},
+        "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")}
+        | {"couplings": struck},
         "latches": {block: entries[block] for block in ("joints", "forces", "drives", "impulses", "stops", "events")}
         | {"couplings": struck},
         "rolling": {block: entries[block] for block in ("couplings", "forces", "drives", "stops", "latches")},
@@ -163,7 +164,9 @@ def shared_name(draft: DraftDocument) -> Iterator[Violation]:
         beside["joints"] = {"couplings": [name for name in struck if name in joints]}
     for name in CAUSES.intersection(joints):
         hint = f"call it {name}_1, say"
-        yield Violation(("joints", name), f"'{name}' is taken: it is a cause of its own, and this strikes", hint, key=True)
+        yield Violation(
+            ("joints", name), f"'{name}' is taken: it is a cause of its own, and this strikes", hint, key=True
+        )
     for block, others in beside.items():
         for name in entries[block]:
             for other, names in others.items():

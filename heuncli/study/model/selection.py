@@ -107,7 +107,12 @@ def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
     stops = {**spec.stops, **spec.latches}
     elements: dict[str, Any] = {}
-    for block, entries in {"forces": spec.forces, "stops": stops, "drives": spec.drives, "couplings": spec.couplings}.items():
+    for block, entries in {
+        "forces": spec.forces,
+        "stops": stops,
+        "drives": spec.drives,
+        "couplings": spec.couplings,
+    }.items():
         for name, entry in entries.items():  # of one name the later ones have their block before it, on the ground
             if name in elements:
                 elements |= {f"{block}.{name}": entry, name: (elements[name], entry)}
