@@ -358,6 +358,12 @@ class Mechanism:
             yield load, slice(at, at + count)
             at += count
 
+    def block_of(self, load: Load) -> str:
+        """The block of the spec that a load belongs to: belts pull their pulleys, threads rub, ropes stretch."""
+        if isinstance(load, PairLoad) and any(own.name == load.name and own.pulls for own in self.couplings):
+            return "couplings"
+        return path_of_load(load).partition(".")[0]
+
     def row_of_rope(self, name: str) -> int:
         """Which row of that table is a rope's that stretches; -1: none, for loads are left out of the scene."""
         return next((own.start for x, own in self.load_rows() if isinstance(x, RopeLoad) and x.name == name), -1)
