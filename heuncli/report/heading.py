@@ -28,6 +28,7 @@ def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
         *(_labelled("reduced", results.model.get("reduced", ())) if every else ()),
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_moved(results.model.get("moved", ())),
+        *_started(results.model.get("started", ())),
         ("run", _run(results)),
         *_anew(results.model.get("reasons", ())),
         *_labelled("rest", results.model.get("rest", ())),
@@ -72,6 +73,14 @@ def _moved(ways: Sequence[str]) -> list[tuple[str, str]]:
     named = ", ".join(ways[:MOST_MOVED])
     more = f" and {len(ways) - MOST_MOVED} more" if len(ways) > MOST_MOVED else ""
     return [("moved", f"to close the joints: {named}{more}; heun model lists it")] if ways else []
+
+
+def _started(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """What starts to move, or rests, otherwise than one may expect."""
+    told = list(sentences[:MOST_TOLD])
+    if len(sentences) > MOST_TOLD:
+        told.append(f"{len(sentences) - MOST_TOLD} more: heun model lists them")
+    return _labelled("start", told)
 
 
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from heuncli.report.digits import OPEN
 from heuncli.results import Array
 from heuncli.study.ask.expectations import Case
 
-NONE: Mapping[str, Any] = MappingProxyType({})
+NONE: Mapping[str, Any] = {}  # a dict, which one process can hand to another
 EXPECTED, KEPT = "expect", "golden"
 
 

@@ -118,7 +118,7 @@ def solved(side: Side, even_at: Mapping[str, Sequence[float]], limit: float | No
     """A side with its numbers, and the warnings of a spec; even_at: the even instants of the other side by case."""
     if side.kind != SPEC:
         return side, []
-    work = partial(alarm.limited, partial(_solved, side.path, even_at), limit)
+    work = partial(alarm.limited, partial(_solved, side.path, even_at), limit, subject=side.path)
     runs, said, digest = contained(work, ("diff", side.path))
     return side._replace(runs=runs, digest=digest), said
 
