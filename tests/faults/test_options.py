@@ -1,4 +1,4 @@
-"""Every command with every option ends as documented: a share of `options.py`, each line on one scene, each scene once."""
+"""Every command with every option ends as documented: of `options.py` each line on a scene, each scene once."""
 
 from __future__ import annotations
 
