@@ -5,7 +5,8 @@ The coordinates are those that no drive holds, and the driven ones whose acceler
 go and what they exert is put on as a constant load, so that the scene without them moves as the one with them; what is
 prescribed is then held, or moved, by a change dQ of that load:
     dq.. = a + n dQ,   a = A_q dq + A_u dq',   dq.._d = w:   dq.._f = a_f + n_fd n_dd^-1 (w - a_d)
-An input force is a change of its value: dq.. = n k, k of a value of 1.
+An input force is a change of its value: dq.. = n k, k of a value of 1. A rate v = row q' that is an output changes with
+dq, too, where something moves: rate_slopes.py.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from heuncli.commands.lagrange.equations import forces_by_cause, partials_of, re
 from heuncli.commands.lagrange.freed import FreedScene, freed
 from heuncli.commands.lagrange.instant import Instant
 from heuncli.commands.lagrange.kinds import units_of
+from heuncli.commands.lagrange.rate_slopes import RateSlopes, rate_slopes
 from heuncli.commands.lagrange.results import StateSpace
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
@@ -257,6 +259,18 @@ def of_one(load: Load) -> Load:
 Matrices = tuple[Array, Array]
 
 
+@record
+class Output:
+    """An output by its rows on the coordinates (f,): of a place, `by_place`; of a rate, `by_rate` and what a
+    displacement makes of it at fixed rates, `by_place`; of an acceleration of a coordinate, `by_acceleration`.
+    """
+
+    by_place: Array
+    by_rate: Array
+    by_acceleration: Array
+    unit: str
+
+
 def outputs_of(
     scene: FreedScene, at: Instant, own: Chosen, found: Linearised, free: Sequence[int], of: Matrices,
     asked: Sequence[str],
@@ -265,43 +279,40 @@ def outputs_of(
     A, B = of
     n = len(free)
     names = tuple(asked) or tuple(own.names[i] for i in free)
-    rows, through, units = [], [], []
+    slopes = rate_slopes(scene.layout, at.t, at.holding, found, own.S, drift_of(found, own))
     all_rows = candidates(scene.layout, found)
-    for name in names:
-        kind, row, unit = output(scene, at, own, found, all_rows, name)
-        row = row[free]
-        rows.append(
-            {"place": np.concatenate([row, np.zeros(n)]), "rate": np.concatenate([np.zeros(n), row])}.get(
-                kind, row @ A[n:]
-            )
-        )
-        through.append(row @ B[n:] if kind == "acceleration" else np.zeros(B.shape[1]))
-        units.append(unit)
-    return np.array(rows).reshape(len(names), 2 * n), np.array(through).reshape(len(names), B.shape[1]), names, units
+    told = [output(slopes, at, own, all_rows, name) for name in names]
+    C = [np.concatenate([o.by_place[free], o.by_rate[free]]) + o.by_acceleration[free] @ A[n:] for o in told]
+    D = [o.by_acceleration[free] @ B[n:] for o in told]
+    shape = len(names), B.shape[1]
+    return np.array(C).reshape(len(names), 2 * n), np.array(D).reshape(shape), names, [o.unit for o in told]
 
 
-def output(
-    scene: FreedScene, at: Instant, own: Chosen, found: Linearised, rows: dict[str, Array], name: str
-) -> tuple[str, Array, str]:
-    """Of an output whether it is a place, a rate or an acceleration; its row on the coordinates (f,); its unit."""
+def output(slopes: RateSlopes, at: Instant, own: Chosen, rows: dict[str, Array], name: str) -> Output:
+    """An output by its name. Raises SolveError where nothing is called so."""
     owner, _, quantity = name.rpartition(".")
     base = {rate: place for place, rate in RATES.items()}
+    none = np.zeros(len(own.names))
     if name in rows:
-        return "place", rows[name] @ own.S, units_of(name).value
+        return Output(rows[name] @ own.S, none, none, units_of(name).value)
+    mechanism = slopes.layout.mechanism
     moved = f"{owner}.{base.get(quantity, quantity)}"
     if moved in rows:
-        return "rate", rows[moved] @ own.S, units_of(moved).rate
+        joint = next(joint for joint in mechanism.joints if joint.name == owner)
+        by_place = none if moved in own.names else slopes.of_joint(joint, base[quantity])
+        return Output(by_place, rows[moved] @ own.S, none, units_of(moved).rate)
     if quantity == "acceleration":
         place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
         if place in own.names:
-            return "acceleration", rows[place] @ own.S, units_of(place).acceleration
-    mechanism = scene.layout.mechanism
+            return Output(none, none, rows[place] @ own.S, units_of(place).acceleration)
     axis = AXES.find(quantity[-1:])
     for i, body in enumerate(mechanism.bodies):
         point = owner.removeprefix(f"{body.name}.")
         if owner.startswith(f"{body.name}.") and point in body.points and axis >= 0 and quantity[:-1] in ("", "v"):
-            states = body_states(at.freed.layout, at.here)
-            X = partials_of(scene.layout, found, own.S).at(i, states.point_position(i, body.points[point])[0])
-            return ("rate", X[axis], "m/s") if quantity[:-1] else ("place", X[axis], "m")
+            position = body_states(at.freed.layout, at.here).point_position(i, body.points[point])[0]
+            X = partials_of(slopes.layout, slopes.found, own.S).at(i, position)[axis]
+            if not quantity[:-1]:
+                return Output(X, none, none, "m")
+            return Output(slopes.of_point(i, position)[axis], X, none, "m/s")
     hint = did_you_mean(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
     raise SolveError(Problem(CODE, f"--outputs {name}: no coordinate and no point is called so", hint=hint))

@@ -118,7 +118,8 @@ def joint_block(load: JointLoads) -> JointBlock:
     if load.tension is not None:
         block["tension"] = load.tension
     if load.joint.bearing is not None:
-        block["pressure"] = np.sqrt(np.sum(load.force**2, axis=1)) / load.joint.bearing
+        carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
+        block["pressure"] = carried / load.joint.bearing
     if load.joint.path is not None and load.joint.path.radius:
         block["contact_point"] = load.points.on_path(load.joint, load.point)
     return block
