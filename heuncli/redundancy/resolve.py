@@ -146,9 +146,10 @@ def put_verdicts(
                 block = shown["stops"][stop.name]
                 is_open = open_along(stop.quantity, beside, stress)
                 block |= {name: opened(value, is_open) for name, value in block.items()}
-        if drive is not None and load.drive is not None and load.axis is not None:
-            if (element := elements.get(keys.get(("drives", drive.name), ""))) is not None:
-                open_support(element, of_quantity(free, drive.quantity), stress)
+        if drive is None or load.drive is None or load.axis is None:
+            continue
+        if (element := elements.get(keys.get(("drives", drive.name), ""))) is not None:
+            open_support(element, of_quantity(free, drive.quantity), stress)
 
 
 def put_verdicts_on_couplings(

@@ -1,7 +1,7 @@
-"""Every command with every one of its options on every spec: it ends as documented, and what it tells is finite or marked.
+"""Every command with every one of its options on every spec ends as documented, with numbers finite or marked.
 
-The commands and options are those of the registry. An option gets its words from LINES here; one that stands in none of them
-is a fault of this file, which `uncovered` names. The whole product is some thousands of runs:
+The commands and options are those of the registry. An option gets its words from LINES here; one that stands in none
+of them is a fault of this file, which `uncovered` names. The whole product is some thousands of runs:
 
     python -m tests.faults.options [--command run] [--scene rotor] [--share 1/4] [--time-limit 3]
 
@@ -155,20 +155,23 @@ LINES: Mapping[str, Sequence[str]] = {
         "{spec} {interval} {condition} --scan 5 --evaluations 12 --time-limit {limit}",
         "{spec} {interval} {condition} --scan 5 --evaluations 12 --format json --time-limit {limit}",
         "{spec} {interval} {condition} --scan 5 --format csv -o {out}/find.csv --time-limit {limit}",
-        "{spec} {interval} {condition} --scan 4 --tolerance 1e-6 --units kN,mm --set {setting2} --strict -q --time-limit {limit}",
+        "{spec} {interval} {condition} --scan 4 --tolerance 1e-6 --units kN,mm --set {setting2} --strict -q"
+        " --time-limit {limit}",
         "{spec} {interval} {condition} --scan 4 --case {case} --time-limit {limit}",
     ),
     "sensitivity": (
         "{spec} {number} --measure {measure} --time-limit {limit}",
         "{spec} {number} --measure {measure} --format json --time-limit {limit}",
         "{spec} {number} --measure {measure} --spread {spread} --format csv --time-limit {limit}",
-        "{spec} {number} --measure {measure} --spread {spread} -o {out}/s.json --units kN,mm --strict -q --time-limit {limit}",
+        "{spec} {number} --measure {measure} --spread {spread} -o {out}/s.json --units kN,mm --strict -q"
+        " --time-limit {limit}",
         "{spec} {number} --measure {measure} --tolerance 1e-7 --set {setting2} --case {case} --time-limit {limit}",
     ),
     "tune": (
         "{spec} {interval} --minimise {measure} --evaluations 8 --jobs 1 --time-limit {limit}",
         "{spec} {interval} --maximise {measure} --evaluations 8 --jobs 1 --format json --time-limit {limit}",
-        "{spec} {interval} --minimise {measure} --subject-to {bound} --evaluations 8 --jobs 1 --seed 2 --time-limit {limit}",
+        "{spec} {interval} --minimise {measure} --subject-to {bound} --evaluations 8 --jobs 1 --seed 2"
+        " --time-limit {limit}",
         "{spec} {interval} --minimise {measure} --evaluations 6 --jobs 1 --precision 1e-2 --history {out}/h.csv"
         " -o {out}/tune.json --strict -q --time-limit {limit}",
         "{spec} {interval} --minimise {measure} --evaluations 6 --jobs 1 --tolerance 1e-6 --no-reduce --units kN,mm"
@@ -219,7 +222,8 @@ LINES: Mapping[str, Sequence[str]] = {
         "loads {spec} --body {body} --at first --case {case} --format json",
         "loads {spec} --body {body} --at first --set {setting} --format json",
         "loads {spec} --body {body} --at first --method RK4 --step {step} --format csv",
-        "loads {spec} --body {body} --at first --tolerance 1e-6 --no-reduce --least-norm --time-limit {limit} --format csv",
+        "loads {spec} --body {body} --at first --tolerance 1e-6 --no-reduce --least-norm --format csv"
+        " --time-limit {limit}",
     ),
     "check": (
         "{spec} --time-limit {limit}",
@@ -319,7 +323,8 @@ def words_of(path: Path, text: str, limit: float) -> dict[str, str]:
     return {
         "spec": str(path), "changed": str(path.parent / "changed.yaml"), "entry": f"joints.{joint}", "body": body,
         "setting": f"{number}={value!r}", "setting2": f"{second}={other!r}", "case": case, "measure": measure,
-        "other": f"final bodies.{body}.center.x", "path": f"bodies.{body}.center", "force_path": f"joints.{joint}.force",
+        "other": f"final bodies.{body}.center.x", "path": f"bodies.{body}.center",
+        "force_path": f"joints.{joint}.force",
         "x": "time" if coordinate.startswith("none") else f"coordinates.{coordinate}", "coordinate": coordinate,
         "angle": angle, "point": point, "section": f"sections.{section}", "force": force, "number": number,
         "axis": f"{number}={value!r},{value * 1.001 + 1e-9!r}", "axis2": f"{second}={other!r},{other * 1.001 + 1e-9!r}",

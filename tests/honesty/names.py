@@ -21,6 +21,8 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
+from heuncli.errors import Finding
+from heuncli.expressions.units import parse_unit
 from heuncli.spec.names import RESERVED_FOR
 from heuncli.spec.source import parse
 from tests.shared.folders import SPECS
@@ -69,7 +71,8 @@ FORMS = (
     Form("plot", ("{path}", "-o", "{folder}/plot.svg"), "text"),
     Form("show", ("-o", "{folder}/show.html"), "text"),
     Form("report", ("-o", "{folder}/report.md"), "text", "{folder}/report.md"),
-    Form("export", ("--body", "{body}", "--at", "first", "-q", "-o", "{folder}/loads.json"), "json", "{folder}/loads.json"),
+    Form("export", ("--body", "{body}", "--at", "first", "-q", "-o", "{folder}/loads.json"), "json",
+         "{folder}/loads.json"),
 )  # fmt: skip
 
 
@@ -85,15 +88,15 @@ def tree_of(path: Path) -> Any:
 
 
 def words_for(spec: NeutralSpec, random: Random, merge: bool) -> dict[str, str]:
-    """A word of heun's for every name, allowed in all its blocks; merge: of two names in different blocks often the same."""
+    """A word of heun's for every name, allowed in all its blocks; merge: often the same for names of other blocks."""
     taken: dict[str, set[str]] = {}
     found: dict[str, str] = {}
     for name in random.sample(sorted(spec.blocks), len(spec.blocks)):
         blocks = spec.blocks[name]
         own = blocks | ({"struck"} if blocks & STRUCK else set())
-        refused = {word for block in blocks for word in RESERVED_FOR.get(block, ())} | (
-            {"until"} if "events" in blocks else set()
-        )
+        refused = {word for block in blocks for word in RESERVED_FOR.get(block, ())}
+        refused |= {"until"} if "events" in blocks else set()
+        refused |= {word for word in WORDS if is_unit(word)} if "parameters" in blocks else set()
         used = [word for word in taken if not (taken[word] & own) and word not in refused]
         free = [word for word in WORDS if word not in taken and word not in refused]
         word = random.choice(used if merge and used and random.random() < 0.6 else free or [f"{name}_"])
@@ -103,6 +106,14 @@ def words_for(spec: NeutralSpec, random: Random, merge: bool) -> dict[str, str]:
 
 
 QUICK = tuple(form for form in FORMS if form.command in ("run", "model", "lagrange", "check", "export", "plot"))
+
+
+def is_unit(word: str) -> bool:
+    """Whether a word is a unit: behind a number it is read as that, and a parameter of this name is refused there."""
+    try:
+        return bool(parse_unit(word))
+    except Finding:
+        return False
 
 
 class Told(NamedTuple):

@@ -1,7 +1,7 @@
 """Every scene there is, by name, as text: the worked examples, the starters, and the scenes of tests/shared.
 
-Of tests/shared all texts that are whole specs are found by looking; of functions that draw scenes two seeds each, one at one
-instant and one in motion.
+Of tests/shared all texts that are whole specs are found by looking; of functions that draw scenes there are two seeds,
+one at an instant and one in motion.
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ from tests.shared.folders import ROOT, SPECS
 
 STARTERS = ROOT / "heuncli" / "starters"
 DRAWN = (  # functions of tests/shared that draw a scene by its seed
-    "cam_scenes.cam_scene", "coupled_scenes.coupled_scene", "coupled_in_a_plane.coupled_flat", "doubles.redundant_scene",
-    "geared_scenes.geared_scene", "loops.loop_scene", "planar_scenes.flat_scene", "reducible.carried", "reducible.driven",
+    "cam_scenes.cam_scene", "coupled_scenes.coupled_scene", "coupled_in_a_plane.coupled_flat",
+    "doubles.redundant_scene", "geared_scenes.geared_scene", "loops.loop_scene", "planar_scenes.flat_scene",
+    "reducible.carried", "reducible.driven",
     "reducible.welded", "reducible.round_scene", "rope_scenes.rope_scene", "rubbing.rubbing_scene",
     "rolling_scenes.rolling_scene", "stopped_trees.stopped_tree", "thin_rods.thin_rods", "train_scenes.train_scene",
     "trees.tree_scene",

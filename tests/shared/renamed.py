@@ -1,7 +1,7 @@
 """A spec under other names: every named thing gets a token that no word of heun contains, or a word of heun.
 
-`NeutralSpec` holds a spec whose names are places for tokens. Every name keeps to itself: what has one name in two blocks has
-one in both afterwards. So a text of heun about the tokens becomes that about the words by replacing token by word.
+`NeutralSpec` holds a spec whose names are places for tokens. What has one name in two blocks has one in both
+afterwards. So a text of heun about the tokens becomes that about the words by replacing token by word.
 """
 
 from __future__ import annotations
@@ -15,21 +15,22 @@ Tree: TypeAlias = Any  # mappings, lists, numbers and words
 # words of heun's results, tables, specs and commands, and what other languages would take for something else
 WORDS = (
     "open", "total", "k", "C", "force", "moment", "point", "shares", "at", "kind", "elements", "supports", "axis",
-    "mass_effect", "time", "value", "state", "none", "null", "about", "s", "side", "line", "stress", "on", "N", "M1", "x",
-    "energy", "work", "status", "code", "names", "bodies", "joints", "forces", "sections", "sum", "reason", "number",
-    "drive", "length", "rate", "power", "chosen", "begins", "to", "error", "condition", "case", "base", "title", "model",
-    "kinetic", "potential", "scene", "ok", "constructor", "toString", "keys", "items", "T", "q", "values", "found",
-    "world", "body", "spec", "heun", "version", "gear", "stop", "impulse", "min", "max", "first", "last", "true", "yes",
-    "mean", "orders", "residual", "seen", "blows", "name", "events", "until", "accuracy", "horizon", "unknown", "table",
-    "json", "csv", "start", "end", "rest", "free", "driven", "part", "unit", "of", "is", "set", "plane", "tension",
+    "mass_effect", "time", "value", "state", "none", "null", "about", "s", "side", "line", "stress", "on", "N", "M1",
+    "x", "energy", "work", "status", "code", "names", "bodies", "joints", "forces", "sections", "sum", "reason",
+    "number", "drive", "length", "rate", "power", "chosen", "begins", "to", "error", "condition", "case", "base",
+    "title", "model", "kinetic", "potential", "scene", "ok", "constructor", "toString", "keys", "items", "T", "q",
+    "values", "found", "world", "body", "spec", "heun", "version", "gear", "stop", "impulse", "min", "max", "first",
+    "last", "true", "yes", "mean", "orders", "residual", "seen", "blows", "name", "events", "until", "accuracy",
+    "horizon", "unknown", "table", "json", "csv", "start", "end", "rest", "free", "driven", "part", "unit", "of",
+    "is", "set", "plane", "tension",
 )  # fmt: skip
 MAPPINGS = (
     "parameters", "bodies", "joints", "drives", "forces", "impulses", "stops", "latches", "couplings", "rolling",
     "sections", "tables", "cases",
 )  # fmt: skip
 WORDS_ONLY = frozenset({  # keys of values that name nothing of the scene
-    "type", "frame", "title", "space", "side", "sequence", "method", "interpolation", "outside", "file", "units", "contact",
-    "x_unit", "y_unit", "unit",
+    "type", "frame", "title", "space", "side", "sequence", "method", "interpolation", "outside", "file", "units",
+    "contact", "x_unit", "y_unit", "unit",
 })  # fmt: skip
 NUMBER = r"(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 TOKEN = re.compile(rf"{NUMBER}(?:\s*[A-Za-z°µ%]\w*(?:[/·^]\w+)*)?|(?P<name>[A-Za-z]\w*)")
@@ -139,7 +140,7 @@ def _in_expression(value: str, mark: Callable[[str], str]) -> str:
 
 
 def tokens_for(words: Sequence[str]) -> dict[str, str]:
-    """A token of every word: none is part of another, they sort as the words do and, from three letters on, are as long."""
+    """A token of every word: none is part of another; they sort as the words do, and are as long."""
     found = {}
     for place, word in enumerate(sorted(set(words))):
         token = "Ж" + LETTERS[place // len(LETTERS)] + LETTERS[place % len(LETTERS)]
