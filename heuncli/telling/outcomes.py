@@ -20,7 +20,7 @@ class Outcome(NamedTuple):
     """One comparison: of what and when, expected, found and allowed in words, and if it fails why.
 
     kind: with what the spec expects, or with what was kept; case: the load case; block: the same for JSON; warned: a
-    thing that is told and does not fail; skipped: nothing was compared.
+    thing that is told and does not fail; skipped: nothing was compared; note: what is said of one that holds.
     """
 
     kind: str
@@ -36,6 +36,7 @@ class Outcome(NamedTuple):
     block: Mapping[str, Any] = NONE
     warned: bool = False
     skipped: bool = False
+    note: str = ""
 
     @property
     def passed(self) -> bool:
