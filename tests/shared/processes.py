@@ -34,9 +34,9 @@ def interruptible() -> Iterator[None]:
 
 
 def wait_until_solving(pid: int, is_solving: Callable[[int], bool] | None = None) -> None:
-    """Wait until a process of heun is at work on a scene: by default, until it has loaded NumPy; without /proc some s."""
+    """Wait until a process of heun is at work on a scene: by default, until it has loaded NumPy."""
     if not Path("/proc/self/maps").exists():
-        time.sleep(2.0)
+        time.sleep(2.0)  # nobody tells
         return
     until = time.monotonic() + 60.0
     while not (is_solving or _has_numpy)(pid) and time.monotonic() < until:
