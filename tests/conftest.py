@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.cli import alarm
 from heuncli.cli.entry import enter
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from heuncli.nearest import begin_file
@@ -60,6 +61,9 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 def pytest_configure() -> None:
     """Processes that tests start take signals as on a terminal, and warnings are errors in them, too."""
     hand_down_signals()
+    alarm.HARD_END = (
+        600.0  # s: however slow the machine, a time limit of a command does not end the process of the tests
+    )
     os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")  # NumPy's; of these users would see the paths
 
 

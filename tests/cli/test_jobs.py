@@ -19,6 +19,8 @@ from heuncli.errors import LimitError
 from heuncli.variants.asking import Answer, Asker
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
 from tests.shared.folders import SPECS
+from tests.shared.processes import wait_until_solving
+from tests.shared.sweeps import workers_of
 
 
 @pytest.fixture
@@ -106,7 +108,7 @@ def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> N
         words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
     )
     with process:
-        time.sleep(1.5)
+        wait_until_solving(process.pid, lambda pid: len(workers_of(pid)) == 2)
         os.killpg(process.pid, signal.SIGINT)
         process.communicate(timeout=10)
         assert process.returncode in (130, -signal.SIGINT)

@@ -64,10 +64,12 @@ class Terminal:
 @contextmanager
 def reading(folder: Path, pager: str) -> Iterator[Terminal]:
     """`heun explain run` on a terminal, up to where the pager waits for a key."""
-    (folder / "pager").write_text(PAGER)
-    (folder / "pager").chmod(0o755)
     ours, theirs = os.openpty()
-    env = {**os.environ, "PAGER": pager.format(folder / "pager"), "TERM": "dumb", "PYTHONPATH": str(ROOT)}
+    (folder / "bin").mkdir()
+    (folder / "bin" / "a-pager").write_text(PAGER)
+    (folder / "bin" / "a-pager").chmod(0o755)
+    path = os.pathsep.join([str(folder / "bin"), os.environ.get("PATH", os.defpath)])
+    env = {**os.environ, "PAGER": pager, "PATH": path, "TERM": "dumb", "PYTHONPATH": str(ROOT)}
     process = subprocess.Popen(
         [sys.executable, "-c", LEADER, "explain", "commands"], stdin=theirs, stdout=theirs, stderr=theirs, cwd=folder,
         env=env, start_new_session=True,
@@ -96,7 +98,7 @@ def others_of(session: int) -> list[int]:
 
 
 def test_an_interrupt_is_for_the_pager(folder: Path) -> None:
-    with reading(folder, "{}") as terminal:
+    with reading(folder, "a-pager") as terminal:
         terminal.type(b"\x03\x1c")  # Ctrl-C, Ctrl-\
         terminal.type(b"q")
         terminal.wait_for(b"took q")
@@ -107,7 +109,7 @@ def test_an_interrupt_is_for_the_pager(folder: Path) -> None:
 
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="the processes of a session are read from /proc")
 @pytest.mark.parametrize(
-    ("number", "pager"), [(signal.SIGTERM, "{}"), (signal.SIGHUP, "{}"), (signal.SIGTERM, "A='b c' {}")]
+    ("number", "pager"), [(signal.SIGTERM, "a-pager"), (signal.SIGHUP, "a-pager"), (signal.SIGTERM, "A='b c' a-pager")]
 )
 def test_what_ends_heun_ends_the_pager(folder: Path, number: signal.Signals, pager: str) -> None:
     with reading(folder, pager) as terminal:

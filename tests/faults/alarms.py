@@ -46,8 +46,8 @@ COMMANDS = (
     "lagrange slider_crank.yaml --over main.angle=0:360deg",
 )
 QUOTED = {"max_force": "max joints.main.force", "max_force=1kN": "max joints.main.force = 1 kN"}
-OF_VARIANTS = {"tune", "sweep"}  # whose processes lose a variant each to the alarm
-PARTIAL = {*OF_VARIANTS, "check"}  # these tell what is done also where the time is up
+OTHERWISE = {"tune", "sweep", "chart"}  # a variant or a method is lost to the alarm; chart tells times
+PARTIAL = {*OTHERWISE, "check"}  # these tell what is done also where the time is up
 LIBRARIES = ("numpy", "pydantic", "yaml", "heuncli.study.workflow")
 SCIPY = ("scipy.optimize", "scipy.stats")
 FAR = "3600"  # s
@@ -108,7 +108,7 @@ def faults_of(line: str, left: Left, undisturbed: Left) -> list[str]:
     found = [f"{word} on standard error" for word in FOREIGN if word in left.err]
     if left.code == 0:
         same = (left.out, left.files.keys()) == (undisturbed.out, undisturbed.files.keys())
-        if not same and line.split()[0] not in OF_VARIANTS:
+        if not same and line.split()[0] not in OTHERWISE:
             found.append("other results than undisturbed")
     elif left.code == 4:
         if "time-limit" not in left.err + left.out and not line.startswith("tune"):

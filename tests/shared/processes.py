@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import signal
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 TAKEN = ("SIGINT", "SIGTERM", "SIGHUP", "SIGQUIT")
 
@@ -29,3 +31,19 @@ def interruptible() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGINT, before)
+
+
+def wait_until_solving(pid: int, is_solving: Callable[[int], bool] | None = None) -> None:
+    """Wait until a process of heun is at work on a scene: by default, until it has loaded NumPy."""
+    if not Path("/proc/self/maps").exists():
+        time.sleep(2.0)  # nobody tells
+        return
+    until = time.monotonic() + 60.0
+    while not (is_solving or _has_numpy)(pid) and time.monotonic() < until:
+        time.sleep(0.02)
+
+
+def _has_numpy(pid: int) -> bool:
+    with contextlib.suppress(OSError):
+        return "_multiarray_umath" in Path(f"/proc/{pid}/maps").read_text()
+    return False
