@@ -303,7 +303,7 @@ def judged_row(seed: int) -> tuple[Verdict, dict[str, Any]]:
                                                 for k in range(len(own.names))) else "struck"), tree  # fmt: skip
     if gap:
         return judged_gaps(run, own, wanted), tree
-    if (broken := laws(run, own, wanted)):
+    if broken := laws(run, own, wanted):
         return Verdict("law", more=broken), tree
     ratio, name = compare_row(run, own, wanted)
     what = "same" if ratio <= FACTOR else "farther than stated"
@@ -341,7 +341,7 @@ def held(seed: int) -> Held:
     rng = np.random.default_rng([seed, 97])
     k = int(rng.integers(2, 8))
     turned, _ = np.linalg.qr(rng.standard_normal((3, 3)))
-    moments = np.array([1.0, 1.0, 1.0]) + rng.uniform(-0.4, 0.4, 3)
+    moments = np.array([1.0, 1.0, 1.0]) + rng.uniform(-0.3, 0.3, 3)
     p = rng.uniform(-1.0, 1.0, (k, 3))
     up = np.array([0.0, 0.0, 1.0])
     n = up + rng.uniform(0.0, 0.8) * rng.standard_normal((k, 3))

@@ -24,9 +24,10 @@ from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 
 MOST_IMPACTS = 20_000  # of one group at one instant: a ball between a wall and a mass 4e7 times its own
+UNSOLVED = 0.1  # of a rate's rounding: what is left of it where contacts are solved for together
 SETTLING = 200  # plastic impacts in a row without a flight, behind which their limit is solved for
 
-Solver = Callable[[Array, Indices, Array], tuple[Array, Mask]]
+Solver = Callable[[Array, Indices, Array, Array], tuple[Array, Mask]]
 
 
 class EndlessImpacts(Exception):
@@ -62,8 +63,8 @@ class ContactRates:
     """Rates and gaps of contacts during a sequence; plain numbers, for a few contacts are struck thousands of times.
 
     v: rates of opening; gap: in any unit of length; widest: the gap's largest since the last impact, by which its
-    rounding is measured; total: impulses; fastest, moved: the largest of each rate, and the sum of its changes, by which
-    its rounding is measured. Changes with every flight and impact.
+    rounding is measured; total: impulses; fastest, moved: the largest of each rate, and the sum of its changes, by
+    which its rounding is measured. Changes with every flight and impact.
     """
 
     def __init__(self, start: Array, lengths: Array, A: Array) -> None:
@@ -123,7 +124,7 @@ def strike_in_sequence(
     """Strike contacts one after another until none closes.
 
     touch: the contacts (k,); A (k, k): rates of opening by unit impulses; start (k,): rates of opening behind what is
-    given; noise (k,): their rounding; moves (k,): whether an impulse moves anything; solve_impulses(v, own, e):
+    given; noise (k,): their rounding; moves (k,): whether an impulse moves anything; solve_impulses(v, own, e, noise):
     impulses of contacts that close together, and which of them depend on the others. Raises EndlessImpacts.
     """
     at = ContactRates(np.where(np.abs(start) <= noise, 0.0, start), touch.length, A)
@@ -147,11 +148,12 @@ def strike_in_sequence(
         if any(felt[i, k] for i in struck for k in struck if i != k):
             own, v = np.array(struck, dtype=int), np.array(at.v)
             used = np.where(v[own] < 0.0, restitution[own], 0.0)
-            z, open_ = solve_impulses(v, own, used)
+            z, open_ = solve_impulses(v, own, used, np.array([UNSOLVED * at.rounding(i) for i in struck]))
             for i, impulse in zip(struck, z.tolist(), strict=True):
                 at.push(i, impulse)
             for i, impulse, rebound in zip(struck, z.tolist(), (-used * v[own]).tolist(), strict=True):
-                at.v[i] = rebound if impulse > 0.0 else at.v[i]
+                if impulse > 0.0 or not z.any():  # or what is left of them is rounding
+                    at.v[i] = rebound
             depends[own[open_]] = True
         else:
             for i in struck:
