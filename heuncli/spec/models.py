@@ -457,8 +457,8 @@ SIMULTANEOUS: ImpactModel = "simultaneous"
 class Analysis(NamedTuple):
     """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
 
-    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default. impacts: how
-    a blow goes through several contacts that touch.
+    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default. impacts:
+    how a blow goes through several contacts that touch.
     """
 
     type: Literal["motion", "impulse", "state", "rest"]

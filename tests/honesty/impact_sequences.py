@@ -53,6 +53,12 @@ class Ended:
     count: int = 0
     last: float = 0.0
     is_endless: bool = False
+    fastest: float = 0.0
+
+    @property
+    def doubt(self) -> float:
+        """What is missing of the speeds where a geometric sequence is left at SMALLEST: that, over its ratio less 1."""
+        return SMALLEST * self.fastest * (1 + self.count)
 
 
 def event_driven(masses: list[float], v: list[float], contacts: list[Contact], gaps: list[float]) -> Ended:
@@ -65,6 +71,7 @@ def event_driven(masses: list[float], v: list[float], contacts: list[Contact], g
         return 0.0 if i < 0 else v[i]
 
     while True:
+        found.fastest = max(found.fastest, *map(abs, v))
         rates = [c.sense * (speed(c.j) - speed(c.i)) for c in contacts]
         closing = [k for k, rate in enumerate(rates) if rate < -SMALLEST * fastest]
         if not closing:
@@ -253,8 +260,9 @@ def compare_row(run: Study, own: Row, wanted: Ended) -> tuple[float, str]:
     block, stops = run.results.impulses[0], own.way in ("rod", "nested")
     u = np.array([*own.direction, 0.0][:3])
     largest = max(wanted.impulses)
-    fastest = max(abs(x) for x in (*start_of(own), *wanted.v))
-    found = []
+    # a light ball that carries a heavy one in a nested row: digits that the inertia of the branch loses
+    lost = np.finfo(float).eps * max(own.masses) / min(own.masses) if own.way == "nested" else 0.0
+    found, doubts = [], []
     for c, name, z in zip(own.contacts, own.names, wanted.impulses, strict=True):
         if stops or c.j < 0:
             has = abs(float(block.get("stops", {}).get(name, {}).get("force", 0.0)))
@@ -264,12 +272,13 @@ def compare_row(run: Study, own: Row, wanted: Ended) -> tuple[float, str]:
             has = abs(float(block.get(kind, {}).get(name, {}).get("tension", 0.0)))
             path = (kind, name, "tension")
         stated = error_of(run, path, "N·s") if run.history.beside else 0.0
-        found.append((abs(has - z) / (stated + ROUNDING * largest), name))
+        doubts.append(stated + (ROUNDING + lost) * largest + wanted.doubt * sum(own.masses))
+        found.append((abs(has - z) / doubts[-1], name))
     motion = float(run.results.accuracy["estimate"]["motion"]) * run.magnitudes.size
     for k, name in enumerate(own.balls):
         jump = float(np.dot(block["bodies"][name]["center_velocity_jump"], u))
         off = abs(jump - (wanted.v[k] - own.v[k] * (own.strike != "drive" or k > 0)))
-        found.append((off / (motion + ROUNDING * fastest), name))
+        found.append((off / (motion + 2.0 * max(doubts) / own.masses[k] + ROUNDING * wanted.fastest), name))
     return max(found)
 
 
@@ -294,7 +303,7 @@ def judged_row(seed: int) -> tuple[Verdict, dict[str, Any]]:
                                                 for k in range(len(own.names))) else "struck"), tree  # fmt: skip
     if gap:
         return judged_gaps(run, own, wanted), tree
-    if (broken := laws(run, own, wanted)):
+    if broken := laws(run, own, wanted):
         return Verdict("law", more=broken), tree
     ratio, name = compare_row(run, own, wanted)
     what = "same" if ratio <= FACTOR else "farther than stated"
@@ -308,7 +317,7 @@ def judged_gaps(run: Study, own: Row, wanted: Ended) -> Verdict:
     fastest = max(abs(x) for x in (*start_of(own), *wanted.v))
     off = max(abs(a - b) for a, b in zip(speeds, wanted.v, strict=True))
     stated = float(run.results.accuracy["estimate"]["motion"]) * run.magnitudes.size
-    ratio = off / (stated + 10.0 * ROUNDING * fastest)
+    ratio = off / (stated + 10.0 * ROUNDING * fastest + wanted.doubt)
     return Verdict("same" if ratio <= FACTOR else "farther than stated", ratio, f"gaps, {wanted.count} impacts")
 
 
@@ -332,7 +341,7 @@ def held(seed: int) -> Held:
     rng = np.random.default_rng([seed, 97])
     k = int(rng.integers(2, 8))
     turned, _ = np.linalg.qr(rng.standard_normal((3, 3)))
-    moments = np.array([1.0, 1.0, 1.0]) + rng.uniform(-0.4, 0.4, 3)
+    moments = np.array([1.0, 1.0, 1.0]) + rng.uniform(-0.3, 0.3, 3)
     p = rng.uniform(-1.0, 1.0, (k, 3))
     up = np.array([0.0, 0.0, 1.0])
     n = up + rng.uniform(0.0, 0.8) * rng.standard_normal((k, 3))
@@ -352,7 +361,7 @@ def fall_in_sequence(own: Held) -> tuple[Ended, np.ndarray, np.ndarray]:
     turns = np.linalg.solve(own.inertia, levers.T).T
     found = Ended([], [0.0] * len(own.p))
     rates = own.n @ v + levers @ w
-    fastest = float(np.abs(rates).max())
+    fastest = found.fastest = float(np.abs(rates).max())
     while True:
         rates = own.n @ v + levers @ w
         closing = [k for k, rate in enumerate(rates) if rate < -SMALLEST * fastest]
@@ -419,10 +428,10 @@ def judged_body(seed: int) -> tuple[Verdict, dict[str, Any]]:
     for k, z in enumerate(wanted.impulses):
         has = abs(float(block.get(kind, {}).get(f"s{k}", {}).get(part, 0.0)))
         stated = error_of(run, (kind, f"s{k}", part), "N·s")
-        found.append((abs(has - z) / (stated + 10.0 * ROUNDING * largest), f"s{k}"))
+        found.append((abs(has - z) / (stated + 10.0 * ROUNDING * largest + wanted.doubt), f"s{k}"))
     jump = np.concatenate([block["bodies"]["b"][x] for x in ("center_velocity_jump", "angular_velocity_jump")])
     off = float(np.abs(jump - np.concatenate([v - own.v, w - own.w])).max())
-    found.append((off / (10.0 * ROUNDING * max(1.0, float(np.abs(jump).max()))), "b"))
+    found.append((off / (10.0 * ROUNDING * max(1.0, float(np.abs(jump).max())) + wanted.doubt), "b"))
     if abs(float(block["energy_after"]) - after) > 1e-9 * before:
         return Verdict("law", more=f"energy {block['energy_after']!r}, not {after!r}"), tree
     ratio, name = max(found, key=lambda one: -1.0 if math.isnan(one[0]) else one[0])

@@ -130,8 +130,8 @@ def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, cat
 class Unrefined:
     """Impulses as the contacts' problem gives them, and the columns of unit impulses.
 
-    basis: the contacts that bear and are solved for by their rates; others: those of a sequence whose impulses stay, for
-    their rates follow from those of the basis.
+    basis: the contacts that bear and are solved for by their rates; others: those of a sequence whose impulses stay,
+    for their rates follow from those of the basis.
     """
 
     touch: Touching
@@ -368,9 +368,7 @@ class Contacts:
             rows[name] = chosen[name]
         return replace(still, rows=rows)
 
-    def tell(
-        self, t: float, touch: Touching, outcome: ContactOutcome, shared: tuple[SharedImpulse, ...]
-    ) -> None:
+    def tell(self, t: float, touch: Touching, outcome: ContactOutcome, shared: tuple[SharedImpulse, ...]) -> None:
         """Put down what is worth a sentence."""
         own = [self.layout.contacts[i] for i in touch.which.tolist()]
         struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]

@@ -115,12 +115,12 @@ def struck_in_sequence(touch: Touching, A: Array, moves: Mask, pressed: Array, p
     e = np.where(plastic, 0.0, touch.restitution)
     noise = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed)
 
-    def solve_impulses(A: Array, v: Array, own: Indices, e: Array) -> tuple[Array, Mask]:
+    def solve_impulses(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
         part = A[np.ix_(own, own)]
-        found = one_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise[own])
+        found = one_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise)
         return found.z, found.depends
 
-    found = strike_in_sequence(touch, A, touch.rate + pressed, noise, e, moves, solve_impulses)
+    found = strike_in_sequence(touch, A, touch.rate + pressed, noise, moves, e, solve_impulses)
     v = np.where(np.abs(found.rate) <= found.noise, 0.0, found.rate)
     settled = (found.count > 1) & (e > 0.0) & (v == 0.0)
     total, v = brought_to_rest(A, found.impulses, v, moves, plastic)

@@ -24,9 +24,10 @@ from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 
 MOST_IMPACTS = 20_000  # of one group at one instant: a ball between a wall and a mass 4e7 times its own
+UNSOLVED = 0.1  # of a rate's rounding: what is left of it where contacts are solved for together
 SETTLING = 200  # plastic impacts in a row without a flight, behind which their limit is solved for
 
-Solver = Callable[[Array, Array, Indices, Array], tuple[Array, Mask]]
+Solver = Callable[[Array, Indices, Array, Array], tuple[Array, Mask]]
 
 
 class EndlessImpacts(Exception):
@@ -58,79 +59,107 @@ def feels(A: Array) -> Mask:
     return np.asarray(np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size)
 
 
-class Gaps:
-    """The gaps of contacts during a sequence, in any unit of length. Changes with every flight and impact."""
+class ContactRates:
+    """Rates and gaps of contacts during a sequence; plain numbers, for a few contacts are struck thousands of times.
 
-    def __init__(self, lengths: Array) -> None:
-        """lengths (k,): what the unit of each contact's gap is of a length [m]."""
-        self.gap = 1.0 / lengths
-        self.widest = self.gap.copy()  # since the last impact: what rounding of the gap is measured by
+    v: rates of opening; gap: in any unit of length; widest: the gap's largest since the last impact, by which its
+    rounding is measured; total: impulses; fastest, moved: the largest of each rate, and the sum of its changes, by
+    which its rounding is measured. Changes with every flight and impact.
+    """
 
-    def next_impacts(self, rate: Array, closing: Indices) -> tuple[Indices, float]:
+    def __init__(self, start: Array, lengths: Array, A: Array) -> None:
+        """start (k,): rates; lengths (k,): what the unit of each gap is of a length [m]; A (k, k)."""
+        self.v: list[float] = start.tolist()
+        self.gap: list[float] = (1.0 / lengths).tolist()
+        self.widest = self.gap.copy()
+        self.total, self.moved = [0.0] * len(start), [0.0] * len(start)
+        self.fastest = [abs(v) for v in self.v]
+        self.answers: list[list[float]] = A.T.tolist()
+        self.places = range(len(start))
+
+    def rounding(self, i: int) -> float:
+        """What rounding makes of a rate."""
+        return max(tolerances.SUM_ROUNDING * self.fastest[i], tolerances.EPS * self.moved[i])
+
+    def closing(self, movable: list[int]) -> list[int]:
+        """Those that close."""
+        return [i for i in movable if self.v[i] < 0.0 and self.v[i] < -self.rounding(i)]
+
+    def next_impacts(self, closing: list[int]) -> tuple[list[int], float]:
         """Which of the closing contacts are struck next, those within CONTACT_TOGETHER together; the time of flight."""
-        speed = -rate[closing]
-        time = self.gap[closing] / speed
-        least = int(np.argmin(time))
-        doubt = tolerances.CONTACT_TOGETHER * self.widest[closing] / speed
-        return closing[time - time[least] <= doubt + doubt[least]], float(time[least])
+        times = [self.gap[i] / -self.v[i] for i in closing]
+        time = min(times)
+        doubts = [tolerances.CONTACT_TOGETHER * self.widest[i] / -self.v[i] for i in closing]
+        limit = time + doubts[times.index(time)]
+        return [i for i, own, doubt in zip(closing, times, doubts, strict=True) if own <= limit + doubt], time
 
-    def fly(self, rate: Array, time: float, struck: Indices) -> None:
+    def fly(self, time: float, struck: list[int]) -> None:
         """Let the gaps change up to an impact, of which those of the contacts struck there are zero."""
-        self.gap = np.maximum(self.gap + rate * time, 0.0)
-        self.widest = np.maximum(self.widest, self.gap)
-        self.gap[struck] = self.widest[struck] = 0.0
+        if time > 0.0:
+            self.gap = [max(gap + v * time, 0.0) for gap, v in zip(self.gap, self.v, strict=True)]
+            self.widest = [max(widest, gap) for widest, gap in zip(self.widest, self.gap, strict=True)]
+        for i in struck:
+            self.gap[i] = self.widest[i] = 0.0
+
+    def push(self, i: int, z: float) -> None:
+        """Add an impulse of one contact to all rates."""
+        self.total[i] += z
+        for k, answer in zip(self.places, self.answers[i], strict=True):
+            if answer:
+                change = answer * z
+                self.v[k] += change
+                self.moved[k] += abs(change)
+                self.fastest[k] = max(self.fastest[k], abs(self.v[k]))
+
+    def strike(self, i: int, restitution: float) -> None:
+        """Strike one contact as if it were alone."""
+        rebound = -restitution * self.v[i]
+        self.push(i, -(1.0 + restitution) * self.v[i] / self.answers[i][i])
+        self.v[i] = rebound
 
 
 def strike_in_sequence(
-    touch: Touching, A: Array, start: Array, noise: Array, restitution: Array, moves: Mask, solve_impulses: Solver
+    touch: Touching, A: Array, start: Array, noise: Array, moves: Mask, restitution: Array, solve_impulses: Solver
 ) -> ImpactSequence:
     """Strike contacts one after another until none closes.
 
     touch: the contacts (k,); A (k, k): rates of opening by unit impulses; start (k,): rates of opening behind what is
-    given; noise (k,): their rounding; moves (k,): whether an impulse moves anything; solve_impulses(A, v, own, e):
+    given; noise (k,): their rounding; moves (k,): whether an impulse moves anything; solve_impulses(v, own, e, noise):
     impulses of contacts that close together, and which of them depend on the others. Raises EndlessImpacts.
     """
-    v, total, gaps = start.copy(), np.zeros(len(start)), Gaps(touch.length)
-    noise, fastest = noise.copy(), np.abs(start)
-    depends, count = np.zeros(len(v), dtype=bool), np.zeros(len(v), dtype=int)
+    at = ContactRates(np.where(np.abs(start) <= noise, 0.0, start), touch.length, A)
+    depends, count = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=int)
+    felt, e, movable = feels(A), restitution.tolist(), np.flatnonzero(moves).tolist()
     settled: set[int] = set()  # plastic contacts struck since the last flight
     still = 0
-    own_answer, sizes = np.diag(A), np.abs(A)
-    felt = feels(A) & ~np.eye(len(v), dtype=bool)
     for _ in range(MOST_IMPACTS):
-        closing = np.flatnonzero((v < -noise) & moves)
-        if not len(closing):
-            return ImpactSequence(total, v, depends, count, noise)
-        struck, time = gaps.next_impacts(v, closing) if len(closing) > 1 else (closing, flight(gaps, v, closing))
-        still = still + 1 if time == 0.0 and not restitution[struck].any() else 0
-        settled = settled | set(struck.tolist()) if still else set()
-        if still > SETTLING:
-            struck, still = np.array(sorted(settled), dtype=int), 0
-        gaps.fly(v, time, struck)
-        if len(struck) == 1 or not felt[np.ix_(struck, struck)].any():
-            z = -(1.0 + restitution[struck]) * v[struck] / own_answer[struck]
-            rebound = -restitution[struck] * v[struck]
-            v = v + A[:, struck] @ z
-            v[struck] = rebound
-            total[struck] += z
+        closing = at.closing(movable)
+        if not closing:
+            rounding = np.array([at.rounding(i) for i in at.places])
+            return ImpactSequence(np.array(at.total), np.array(at.v), depends, count, np.maximum(noise, rounding))
+        struck, time = at.next_impacts(closing)
+        if time > 0.0 or any(e[i] for i in struck):
+            still, settled = 0, set()
         else:
-            e = np.where(v[struck] < 0.0, restitution[struck], 0.0)
-            z, open_ = solve_impulses(A, v, struck, e)
-            bears, rebound = z > 0.0, -e * v[struck]
-            v = v + A[:, struck] @ z
-            v[struck[bears]] = rebound[bears]
-            total[struck] += z
-            depends[struck[open_]] = True
+            still, settled = still + 1, settled | set(struck)
+        if still > SETTLING:
+            struck, still = sorted(settled), 0
+        at.fly(time, struck)
+        if any(felt[i, k] for i in struck for k in struck if i != k):
+            own, v = np.array(struck, dtype=int), np.array(at.v)
+            used = np.where(v[own] < 0.0, restitution[own], 0.0)
+            z, open_ = solve_impulses(v, own, used, np.array([UNSOLVED * at.rounding(i) for i in struck]))
+            for i, impulse in zip(struck, z.tolist(), strict=True):
+                at.push(i, impulse)
+            for i, impulse, rebound in zip(struck, z.tolist(), (-used * v[own]).tolist(), strict=True):
+                if impulse > 0.0 or not z.any():  # or what is left of them is rounding
+                    at.v[i] = rebound
+            depends[own[open_]] = True
+        else:
+            for i in struck:
+                at.strike(i, e[i])
         count[struck] += 1
-        fastest = np.maximum(fastest, np.abs(v))
-        rounding = np.maximum(tolerances.CONTACT_RATE * fastest, tolerances.EPS * (sizes @ total))
-        noise = np.maximum(noise, rounding)
     raise EndlessImpacts(np.flatnonzero(count), int(np.argmax(count)))
-
-
-def flight(gaps: Gaps, rate: Array, closing: Indices) -> float:
-    """The time until the one contact that closes is struck."""
-    return float(gaps.gap[closing[0]] / -rate[closing[0]])
 
 
 def independent(A: Array) -> Indices:

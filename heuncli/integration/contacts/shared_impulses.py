@@ -127,7 +127,9 @@ def sentence(time: float, shared: SharedImpulse, count: int, impacts: ImpactMode
         parts.append("all act at the same time, what is struck takes its own restitution, what rested does not rebound")
     elif struck:
         number = f"{shared.impacts} impacts" if shared.impacts != 1 else "one impact"
-        parts.append(f"they strike one after another, as over equal tiny gaps, each with its own restitution ({number})")
+        parts.append(
+            f"they strike one after another, as over equal tiny gaps, each with its own restitution ({number})"
+        )
     if shared.settled:
         parts.append(f"{listed(shared.settled)} {verb(shared.settled, 'rests', 'rest')} behind infinitely many impacts")
     if shared.held:
@@ -141,7 +143,9 @@ def sharing_warning(blows: Sequence[tuple[float, Sequence[SharedImpulse]]], impa
     if not own:
         return []
     time, shared = own[0]
-    lead = f"in the blow at t = {time:.6g} s" if len(own) == 1 else f"in {len(own)} blows, the first at t = {time:.6g} s,"
+    lead = (
+        f"in the blow at t = {time:.6g} s" if len(own) == 1 else f"in {len(own)} blows, the first at t = {time:.6g} s,"
+    )
     assumed = f"rigid bodies do not say how, impacts: {impacts} is assumed (heun explain impacts)"
     return [f"{lead} {listed(shared.names)} share the impulse: {assumed}"]
 
