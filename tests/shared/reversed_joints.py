@@ -29,7 +29,8 @@ OWN = re.compile(r"(?<![\w.])(angle|rate|speed)(?![\w.])")
 class Reversal:
     """A scene with joints reversed: signs of the coordinates by joints; joints whose ends are exchanged.
 
-    axes: signs of what is along a joint's axis, which need not have a coordinate. as_ratio: couplings that are told as a ratio; exchanged: those whose members are.
+    axes: signs of what is along a joint's axis, which need not have a coordinate. as_ratio: couplings that become a
+    ratio; exchanged: those whose members are.
     """
 
     tree: Tree
@@ -44,7 +45,9 @@ class Reversal:
         return self.signs.get(str(joint).partition(".")[0], 1.0)
 
 
-def reversed_scene(tree: Tree, rng: np.random.Generator, attitudes: Mapping[str, Array], share: float = 0.6) -> Reversal:
+def reversed_scene(
+    tree: Tree, rng: np.random.Generator, attitudes: Mapping[str, Array], share: float = 0.6
+) -> Reversal:
     """A scene told otherwise; attitudes (3, 3) of the bodies at its start; share: of joints that are reversed."""
     told = Reversal(copy.deepcopy(tree))
     tree = told.tree
@@ -93,7 +96,8 @@ def signed(sign: float, word: str) -> str:
 def joints_with_fixed_ends(tree: Tree) -> set[str]:
     """Joints at whose `to` end, or `from` end, something stands that the other end does not have."""
     kept = {word for _, entry in entries(tree, "couplings") if entry["type"] == "cam" for word in entry["of"]}
-    kept |= {load["joint"] for _, load in entries(tree, "forces") if {"rotor", "length"} & set(load) and "joint" in load}
+    in_joints = [load for _, load in entries(tree, "forces") if "joint" in load]
+    kept |= {load["joint"] for load in in_joints if {"rotor", "length"} & set(load)}
     return kept | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
 
 

@@ -7,11 +7,12 @@ the one linear map a cause: each given impulse, the drives together. Positions s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.expressions.discontinuities import jumps
+from heuncli.expressions.discontinuities import MOST_EQUAL, jumps
 from heuncli.expressions.programs import Expression
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.segments import just_before
@@ -39,6 +40,15 @@ class GivenBlow:
     after: float
     blows: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
+
+    @property
+    def written_time(self) -> float:
+        """Of the instants that rounding does not tell apart the one that is written most briefly: a user means that."""
+        count = int(np.diff(np.array([self.before, self.after]).view(np.int64))[0]) if self.before >= 0.0 else 0
+        if not 1 < count <= 2 * MOST_EQUAL:
+            return self.after
+        instants = np.arange(count) + np.array(math.nextafter(self.before, math.inf)).view(np.int64)
+        return min(instants.view(np.float64).tolist(), key=lambda t: len(repr(t)))
 
     def is_due(self, t: float) -> bool:
         """Whether a run that goes on from an instant t [s] has it behind itself."""
@@ -71,7 +81,8 @@ class Jump:
 
     recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
     names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
-    all impulses [J]; holding (contacts,): which are closed behind it.
+    all impulses [J]; holding (contacts,): which are closed behind it; told: its instant as it is told, where rounding
+    leaves several.
     """
 
     time: float
@@ -83,6 +94,12 @@ class Jump:
     kinetic: tuple[float, float]
     work: float
     holding: Array = np.zeros(0)
+    told: float | None = None
+
+    @property
+    def told_time(self) -> float:
+        """The instant as it is told."""
+        return self.time if self.told is None else self.told
 
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
@@ -190,7 +207,8 @@ def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: Blo
     kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
     names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
-        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding
+        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding,
+        given.written_time if given.before < blow.time < given.after else None,
     )  # fmt: skip
 
 
