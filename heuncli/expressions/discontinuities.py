@@ -197,8 +197,9 @@ def _nearness(expression: Expression, switch: Switch) -> tuple[Callable[[Array],
         return np.asarray((low <= 0.0) & (high >= 0.0)) if table is None else _meets_points(table, low, high)
 
     def may_be(times: Array) -> Mask:
-        low, high, *_ = enclose(times.tolist(), times.tolist())
-        return meets(np.asarray(low), np.asarray(high))
+        low, high = (np.asarray(bound) for bound in enclose(times.tolist(), times.tolist())[:2])
+        width = high - low  # of what is computed with, decimals are rounded, too: as much again either way
+        return meets(low - width, high + width)
 
     def is_equal(times: Array) -> Mask:
         values = np.array(compute(times.tolist()))
