@@ -55,7 +55,7 @@ def reversed_scene(
     with_sense = (*ALONG, "ball") if tree.get("space") == "planar" else ALONG
     turned: dict[str, float] = {}
     for name, joint in entries(tree, "joints"):
-        turned[name] = -1.0 if rng.random() < share else 1.0
+        turned[name] = -1.0 if rng.random() < share and name not in as_written(tree) else 1.0
         if turned[name] < 0.0:
             reverse_axis(tree, name, joint)
         told.signs[name] = turned[name] if joint["type"] in with_sense else 1.0
@@ -98,7 +98,13 @@ def joints_with_fixed_ends(tree: Tree) -> set[str]:
     kept = {word for _, entry in entries(tree, "couplings") if entry["type"] == "cam" for word in entry["of"]}
     in_joints = [load for _, load in entries(tree, "forces") if "joint" in load]
     kept |= {load["joint"] for load in in_joints if {"rotor", "length"} & set(load)}
-    return kept | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
+    return kept | as_written(tree) | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
+
+
+def as_written(tree: Tree) -> set[str]:
+    """Universals with a spring about the axis that their `from` body has: the other one has none."""
+    sprung = {load["joint"] for _, load in entries(tree, "forces") if load["type"] == "turn_spring"}
+    return {name for name in sprung if tree["joints"][name]["type"] == "universal"}
 
 
 def reverse_axis(tree: Tree, name: str, joint: dict[str, Any]) -> None:
