@@ -14,6 +14,12 @@ import numpy as np
 
 from heuncli.expressions.discontinuities import MOST_EQUAL, jumps
 from heuncli.expressions.programs import Expression
+from heuncli.integration.contacts.shared_impulses import (
+    SharedImpulse,
+    find_shared_impulses,
+    held_contacts,
+    loaded,
+)
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.integration.segments import just_before
 from heuncli.mechanism.model import Mechanism
@@ -81,8 +87,8 @@ class Jump:
 
     recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
     names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
-    all impulses [J]; holding (contacts,): which are closed behind it; told: its instant as it is told, where rounding
-    leaves several.
+    all impulses [J]; holding (contacts,): which are closed behind it; shared: contacts of which a model says how they
+    share it; told: its instant as it is told, where rounding leaves several.
     """
 
     time: float
@@ -94,6 +100,7 @@ class Jump:
     kinetic: tuple[float, float]
     work: float
     holding: Array = np.zeros(0)
+    shared: tuple[SharedImpulse, ...] = ()
     told: float | None = None
 
     @property
@@ -168,7 +175,10 @@ def strike(evaluator: Evaluator, given: GivenBlow, state: Array, time: float) ->
         evaluator.workspace, given.before, sides.still.states[0], np.array(sides.loads), np.array(sides.jumps)
     )
     after, work = state_behind(evaluator.layout, given, sides, found.columns)
-    return jump_of(evaluator, given, sides, BlowResult(time, found, sides.causes, after, work, np.zeros(0)))
+    own = loaded(held_contacts(evaluator.layout), found.columns.multipliers)
+    shared = find_shared_impulses(own, np.zeros((len(own), len(own)), dtype=bool), found.columns.multipliers)
+    blow = BlowResult(time, found, sides.causes, after, work, np.zeros(0), shared=tuple(shared))
+    return jump_of(evaluator, given, sides, blow)
 
 
 def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: Columns) -> tuple[Array, float]:
@@ -182,7 +192,7 @@ def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: C
 class BlowResult:
     """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
 
-    struck: the contacts that take part in it, also those that share what others bear.
+    struck: the contacts that take part in it, also those that share what others bear; shared: see Jump.
     """
 
     time: float
@@ -192,6 +202,7 @@ class BlowResult:
     work: float
     holding: Array
     struck: tuple[str, ...] = ()
+    shared: tuple[SharedImpulse, ...] = ()
 
 
 def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: BlowResult) -> Jump:
@@ -208,7 +219,7 @@ def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: Blo
     names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
         blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding,
-        given.written_time if given.before < blow.time < given.after else None,
+        blow.shared, given.written_time if given.before < blow.time < given.after else None,
     )  # fmt: skip
 
 
