@@ -67,9 +67,7 @@ def _along(joint: Joint, now: Assembly, motion: FreedomMotion, size: float) -> R
 
 
 def _way(joint: Joint, now: Assembly) -> Array:
-    """What the travel grows by as the `to` point shifts, seen from `from`, world axes (3,): the axis; of a path r'/r'^2.
-
-    """
+    """What the travel grows by as the `to` point shifts in `from`, world axes (3,): the axis; of a path r'/r'^2."""
     R = pose(now, joint.a)[1]
     if joint.path is None:
         return np.asarray(R @ joint.axis)

@@ -22,7 +22,8 @@ from heuncli.results import Array, Mask
 COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
 CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 FIRST_CELLS = 256  # of a stretch looked at first
-MOST_EQUAL = 1024  # doubles before a change of branch at which rounding may make the operands equal
+MOST_EQUAL = 4096  # doubles before a change of branch at which rounding may make the operands equal, one discontinuity
+FEW_EQUAL = 8  # most often there are fewer
 LOOKED_AT = 1000  # equal parts of a run, at whose ends the sign of a value is looked at
 MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
 OF_TIME = (VAR, 0)  # the program that is the time itself
@@ -81,7 +82,7 @@ def breaks_within(value: Expression, last: float) -> list[float]:
 
 
 def _ends_between(value: Expression, before: float, after: float) -> bool:
-    """Whether a value has a number at the one instant and none at the other; what it depends on besides is taken as 1."""
+    """Whether a value has a number at the one instant and none at the other; what else it depends on is taken as 1."""
     there = [math.isfinite(value.value(t, [1.0] * len(value.uses))) for t in (before, after)]
     return there[0] and not there[1]
 
@@ -92,7 +93,7 @@ def changes(value: Expression, last: float) -> list[tuple[float, float]]:
 
 
 def jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, float, float, float]]:
-    """Where a value jumps within (0, last], or its derivative of an order: the instants before and behind, and limits."""
+    """Where a value, or its derivative of an order, jumps within (0, last]: instants before and behind, and limits."""
     found = []
     for before, after in changes(value, last):
         first, then = value.derivatives(before)[order], value.derivatives(after)[order]
@@ -147,44 +148,64 @@ def _edges(expression: Expression, switch: Switch, changes: Sequence[float]) -> 
     min(t, 1) is computed as t at t = 1 itself, a table that falls to one of its points is computed on the piece above,
     and min(3*t, 0.9) is 3*t at t = 0.3, for 3*0.3 is rounded down. There the old branch ends, not at the next double.
     Together with the change they are one discontinuity, at which the limits from either side are those before and
-    after, whichever branch is computed between.
+    after, whichever branch is computed between. Where there are too many of them the first one is told at which both
+    branches are equal as they are computed: derivatives are those of the new branch from there on (kernel/jets.py).
     """
-    may_be = _nearness(expression, switch)
-    ends, which = np.array(changes), np.arange(len(changes))
-    rows: dict[int, list[float]] = {}
-    for _ in range(MOST_EQUAL):
+    may_be, equal = _nearness(expression, switch)
+    ends, which, edges = np.array(changes), np.arange(len(changes)), list[float]()
+    for _ in range(FEW_EQUAL):
         if not len(ends):
-            break
+            return edges
         ends = np.nextafter(ends, -np.inf)
         near = may_be(ends)
         ends, which = ends[near], which[near]
-        for k, t in zip(which.tolist(), ends.tolist(), strict=True):
-            rows.setdefault(k, [changes[k]]).append(t)
-    return [t for row in rows.values() for t in _from_the_shortest(row)]
+        edges += ends.tolist()
+    for k, t in zip(which.tolist(), ends.tolist(), strict=True):
+        first = _first_of_all(may_be, t)
+        last = math.nextafter(changes[k], -math.inf)
+        if _place(last) - _place(first) < MOST_EQUAL:
+            edges += np.arange(_place(first), _place(t)).view(np.float64).tolist()
+        elif equal(np.array([last]))[0]:
+            edges.append(_first_of_all(equal, last))
+    return edges
 
 
-def _from_the_shortest(instants: Sequence[float]) -> list[float]:
-    """Of descending instants between which rounding cannot tell those behind the one that is written most briefly.
-
-    That one is the instant which a user means: 1, and not 0.9999999999999999.
-    """
-    k = min(range(len(instants)), key=lambda i: (len(repr(instants[i])), -i))
-    return list(instants[1 : k + 1])
+def _place(t: float) -> int:
+    """The number of a double among all that are not negative."""
+    return int(np.array(t).view(np.int64))
 
 
-def _nearness(expression: Expression, switch: Switch) -> Callable[[Array], Mask]:
-    """Whether at instants (n,) a branch may change, as far as rounding can tell."""
+def _first_of_all(holds: Callable[[Array], Mask], t: float) -> float:
+    """The first double of those up to t, where it holds, at all of which something holds, one next to the other."""
+    end, step = _place(t), 1
+    while step <= end and holds(np.array([end - step]).view(np.float64))[0]:
+        step *= 2
+    low, high = max(end - step, -1), end - step // 2
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if holds(np.array([middle]).view(np.float64))[0] else (middle, high)
+    return float(np.array(high).view(np.float64))
+
+
+def _nearness(expression: Expression, switch: Switch) -> tuple[Callable[[Array], Mask], Callable[[Array], Mask]]:
+    """Whether at instants (n,) a branch may change, as far as rounding can tell, and whether it does as computed."""
     margin = switch.decision[:-4] if switch.margin is None else switch.margin
-    enclose = _over_stretches(expression, margin)
+    enclose, compute = _over_stretches(expression, margin), _at_instants(expression, margin)
+    table = None if switch.margin is not None else expression.tables[switch.decision[-3]]
 
-    def bounds(times: Array) -> tuple[Array, Array]:
-        low, high, *_ = enclose(times.tolist(), times.tolist())
-        return np.asarray(low), np.asarray(high)
+    def meets(low: Array, high: Array) -> Mask:
+        return np.asarray((low <= 0.0) & (high >= 0.0)) if table is None else _meets_points(table, low, high)
 
-    if switch.margin is not None:
-        return lambda times: (lambda low, high: (low <= 0.0) & (high >= 0.0))(*bounds(times))
-    table = expression.tables[switch.decision[-3]]
-    return lambda times: _meets_points(table, *bounds(times))
+    def may_be(times: Array) -> Mask:
+        low, high = (np.asarray(bound) for bound in enclose(times.tolist(), times.tolist())[:2])
+        width = high - low  # of what is computed with, decimals are rounded, too: as much again either way
+        return meets(low - width, high + width)
+
+    def is_equal(times: Array) -> Mask:
+        values = np.array(compute(times.tolist()))
+        return meets(values, values)
+
+    return may_be, is_equal
 
 
 def _meets_points(table: TableFunction, low: Array, high: Array) -> Mask:

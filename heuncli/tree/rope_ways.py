@@ -104,10 +104,13 @@ def stay(mechanism: Mechanism, start: Assembly, name: str, k: int, given: spec.P
     pins = pins_at(mechanism, body, point) if given.radius else []
     axis = Z if given.axis is None else unit(np.array(given.axis))
     if given.radius and given.axis is None and not mechanism.planar:
-        if len({tuple(np.round(a, 9)) for _, a, _, _ in pins}) != 1:
-            message = f"the sheave has no axis: {'no pin' if not pins else 'more than one pin'} stands at its centre"
+        if not pins or not all(parallel(a, pins[0][1]) for _, a, _, _ in pins):
+            message = f"the sheave has no axis: {'more than one pin' if pins else 'no pin'} stands at its centre"
             raise refused(name, k, "rope-axis", message, "axis: [x, y, z], in the axes of its body")
         axis = pins[0][1]
+        if given.side in ("left", "right") and any(float(a @ axis) < 0.0 for _, a, _, _ in pins):
+            message = "the axes of the pins at the sheave's centre point opposite ways: which side is left is not told"
+            raise refused(name, k, "rope-axis", message, "axis: [x, y, z], in the axes of its body")
     along = [(carrier, joint, sign * float(np.sign(a @ axis))) for joint, a, carrier, sign in pins if parallel(a, axis)]
     carrier, turn = body, None
     if along:

@@ -16,7 +16,7 @@ import pytest
 from tests.oracle.turns import Array, random_rotation
 from tests.shared.scenes import near, solved
 
-CASES = 24
+CASES = 10
 ALPHA = 0.35
 
 

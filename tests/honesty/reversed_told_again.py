@@ -106,7 +106,13 @@ def differences(first: Study, second: Study, told: Reversal) -> Iterator[Differe
 
 
 def compared(
-    first: Study, second: Study, told: Reversal, path: tuple[str, ...], row: Quantity, pair: tuple[Any, Any], blocks: Any,
+    first: Study,
+    second: Study,
+    told: Reversal,
+    path: tuple[str, ...],
+    row: Quantity,
+    pair: tuple[Any, Any],
+    blocks: Any,
     joints: tuple[Any, Any],
 ) -> Iterator[Difference]:
     """A number of the first run as the second has to tell it."""

@@ -29,7 +29,8 @@ OWN = re.compile(r"(?<![\w.])(angle|rate|speed)(?![\w.])")
 class Reversal:
     """A scene with joints reversed: signs of the coordinates by joints; joints whose ends are exchanged.
 
-    axes: signs of what is along a joint's axis, which need not have a coordinate. as_ratio: couplings that are told as a ratio; exchanged: those whose members are.
+    axes: signs of what is along a joint's axis, which need not have a coordinate. as_ratio: couplings that become a
+    ratio; exchanged: those whose members are.
     """
 
     tree: Tree
@@ -44,7 +45,9 @@ class Reversal:
         return self.signs.get(str(joint).partition(".")[0], 1.0)
 
 
-def reversed_scene(tree: Tree, rng: np.random.Generator, attitudes: Mapping[str, Array], share: float = 0.6) -> Reversal:
+def reversed_scene(
+    tree: Tree, rng: np.random.Generator, attitudes: Mapping[str, Array], share: float = 0.6
+) -> Reversal:
     """A scene told otherwise; attitudes (3, 3) of the bodies at its start; share: of joints that are reversed."""
     told = Reversal(copy.deepcopy(tree))
     tree = told.tree
@@ -52,7 +55,7 @@ def reversed_scene(tree: Tree, rng: np.random.Generator, attitudes: Mapping[str,
     with_sense = (*ALONG, "ball") if tree.get("space") == "planar" else ALONG
     turned: dict[str, float] = {}
     for name, joint in entries(tree, "joints"):
-        turned[name] = -1.0 if rng.random() < share else 1.0
+        turned[name] = -1.0 if rng.random() < share and name not in as_written(tree) else 1.0
         if turned[name] < 0.0:
             reverse_axis(tree, name, joint)
         told.signs[name] = turned[name] if joint["type"] in with_sense else 1.0
@@ -93,8 +96,15 @@ def signed(sign: float, word: str) -> str:
 def joints_with_fixed_ends(tree: Tree) -> set[str]:
     """Joints at whose `to` end, or `from` end, something stands that the other end does not have."""
     kept = {word for _, entry in entries(tree, "couplings") if entry["type"] == "cam" for word in entry["of"]}
-    kept |= {load["joint"] for _, load in entries(tree, "forces") if {"rotor", "length"} & set(load) and "joint" in load}
-    return kept | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
+    in_joints = [load for _, load in entries(tree, "forces") if "joint" in load]
+    kept |= {load["joint"] for load in in_joints if {"rotor", "length"} & set(load)}
+    return kept | as_written(tree) | {name for name, joint in entries(tree, "joints") if "stiffness" in joint}
+
+
+def as_written(tree: Tree) -> set[str]:
+    """Universals with a spring about the axis that their `from` body has: the other one has none."""
+    sprung = {load["joint"] for _, load in entries(tree, "forces") if load["type"] == "turn_spring"}
+    return {name for name in sprung if tree["joints"][name]["type"] == "universal"}
 
 
 def reverse_axis(tree: Tree, name: str, joint: dict[str, Any]) -> None:

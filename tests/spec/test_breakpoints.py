@@ -10,7 +10,7 @@ import pytest
 from heuncli import tolerances
 from heuncli.errors import LimitError
 from heuncli.expressions.curves import fit
-from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
+from heuncli.expressions.discontinuities import beyond, breaks_within, discontinuities, jumps, one_sided_limits
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.expressions.programs import Expression, TableFunction
 from heuncli.integration.methods.dop853 import DOP853
@@ -20,7 +20,8 @@ from heuncli.study.solve.history import require_steps
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)
 RAMP = fit("ramp", [1.0, 2.0, 4.0], [0.0, 1.0, 5.0], "linear", "hold", None)
-TABLES: dict[str, TableFunction | None] = {"triangle": TRIANGLE, "ramp": RAMP}
+REACH = fit("reach", [0.0, 0.25, 1.0], [0.0, 2.0, 3.0], "pchip", "hold", None)
+TABLES: dict[str, TableFunction | None] = {"triangle": TRIANGLE, "ramp": RAMP, "reach": REACH}
 
 
 def read(text: str) -> Expression:
@@ -70,13 +71,45 @@ def test_where_branches_change(text: str, expected: list[float]) -> None:
 @pytest.mark.parametrize("text", [
     "min(t, 1)", "min(1, t)", "max(1 - t, 0)", "max(0, 1 - t)", "abs(t - 1)", "abs(1 - t)", "sign(1 - t)",
     "step(1 - t)", "3 if t <= 1 else 4", "3 if 1 > t else 4", "min(100*t, 100)", "min(t/3, 1/3)", "table(ramp, t)",
+    "table(ramp, t + 3)", "table(ramp, 3*t + 1)", "table(ramp, 2 - t)", "table(ramp, 3 - t)",
+    "table(ramp, 3.7 + 0.3*t)", "table(ramp, 1.1 - 0.1*t)", "table(ramp, 3.9 + t/10)",
+    "table(triangle, t/4)", "table(triangle, -t/4)",
+    "min(0.7*t, 0.7)", "max(0.3 - 0.3*t, 0)", "table(reach, t)", "table(reach, 1 - t)",
 ])  # fmt: skip
 def test_an_edge_is_no_part_of_the_piece_before_it(text: str) -> None:
     """Whichever branch an expression takes at the edge itself."""
-    ((before, behind),) = one_sided_limits(discontinuities(read(text), 0.0, 2.0))
+    before, behind = next(p for p in one_sided_limits(discontinuities(read(text), 0.0, 2.0)) if abs(p[1] - 1.0) < 0.1)
     assert before < 1.0 <= behind
-    assert 1.0 - 1e-15 < before
-    assert behind < 1.0 + 1e-15
+    assert 1.0 - 3e-14 < before  # 3.9 + t/10 is rounded by 4e-16
+    assert behind < 1.0 + 3e-14
+
+
+@pytest.mark.parametrize("text", [
+    "table(ramp, t + 3)", "table(ramp, 2 - t)", "table(ramp, 3.7 + 0.3*t)", "min(3*t, 3)", "max(3 - 3*t, 0)",
+    "abs(1 - t)", "3*t if t <= 1 else 3",
+])  # fmt: skip
+def test_a_run_that_ends_at_a_break_tells_what_is_behind(text: str) -> None:
+    ((before, behind, _, then),) = jumps(read(text), 1.0, order=1)
+    assert before < 1.0
+    assert then == read(text).derivatives(1.5)[1]
+    assert jumps(read(text), 0.999, order=1) == []
+    assert behind <= beyond(1.0)
+
+
+def test_behind_the_end_of_a_table_that_is_not_held_there_is_nothing_to_tell() -> None:
+    table = fit("f", [0.0, 1.0], [0.0, 3.0], "linear", None, None)
+    scope = Scope(tables={"f": table}, in_time=True)
+    for text in ("table(f, t)", "table(f, 1 - t)", "asin(t)*step(1 - t)"):
+        assert breaks_within(compile_expression(text, scope), 1.0) == []
+
+
+@pytest.mark.parametrize(("text", "rate"), [
+    ("min(t, 0)", 0.0), ("max(-t, 0)", 0.0), ("max(0, t)", 1.0), ("abs(-3*t)", 3.0), ("t if t <= 0 else 5*t", 5.0),
+    ("table(ramp, 1 - t)", 0.0), ("table(ramp, 2 - t)", -1.0), ("table(ramp, 4 + t)", 0.0), ("table(ramp, 2 + t)", 2.0),
+    ("table(triangle, -t)", 4.0), ("min(t*t, 0)", 0.0), ("sign(-t)*t", -1.0), ("(t <= 0)*t + 2*t", 2.0),
+])  # fmt: skip
+def test_derivatives_at_a_tie_are_those_of_the_branch_that_begins(text: str, rate: float) -> None:
+    assert read(text).derivatives(0.0)[1] == pytest.approx(rate, abs=1e-15)
 
 
 def test_each_is_the_first_instant_of_its_branch() -> None:

@@ -208,7 +208,8 @@ def test_compiled_and_plain_give_the_same_bits(text: str, t: float) -> None:
     compiled = answers(COMPILED, expression.pack, expression.count, [t])
     assert compiled == answers(PLAIN, expression.pack, expression.count, [t])
     if "nan" not in compiled:
-        assert compiled[0] == compiled[1]
+        behind = float.hex(expression.value(math.nextafter(t, math.inf)))  # at a tie derivatives are of what begins
+        assert compiled[1] in (compiled[0], behind)
 
 
 @pytest.mark.skipif(not expressions.COMPILED, reason="there is only the plain form")

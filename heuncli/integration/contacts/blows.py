@@ -7,11 +7,12 @@ the one linear map a cause: each given impulse, the drives together. Positions s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.expressions.discontinuities import jumps
+from heuncli.expressions.discontinuities import MOST_EQUAL, jumps
 from heuncli.expressions.programs import Expression
 from heuncli.integration.contacts.shared_impulses import (
     SharedImpulse,
@@ -46,6 +47,15 @@ class GivenBlow:
     blows: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
 
+    @property
+    def written_time(self) -> float:
+        """Of the instants that rounding does not tell apart the one that is written most briefly: a user means that."""
+        count = int(np.diff(np.array([self.before, self.after]).view(np.int64))[0]) if self.before >= 0.0 else 0
+        if not 1 < count <= 2 * MOST_EQUAL:
+            return self.after
+        instants = np.arange(count) + np.array(math.nextafter(self.before, math.inf)).view(np.int64)
+        return min(instants.view(np.float64).tolist(), key=lambda t: len(repr(t)))
+
     def is_due(self, t: float) -> bool:
         """Whether a run that goes on from an instant t [s] has it behind itself."""
         return self.before < t or self.after <= t
@@ -78,7 +88,7 @@ class Jump:
     recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
     names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
     all impulses [J]; holding (contacts,): which are closed behind it; shared: contacts of which a model says how they
-    share it.
+    share it; told: its instant as it is told, where rounding leaves several.
     """
 
     time: float
@@ -91,6 +101,12 @@ class Jump:
     work: float
     holding: Array = np.zeros(0)
     shared: tuple[SharedImpulse, ...] = ()
+    told: float | None = None
+
+    @property
+    def told_time(self) -> float:
+        """The instant as it is told."""
+        return self.time if self.told is None else self.told
 
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
@@ -203,7 +219,7 @@ def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: Blo
     names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
         blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding,
-        blow.shared,
+        blow.shared, given.written_time if given.before < blow.time < given.after else None,
     )  # fmt: skip
 
 

@@ -31,7 +31,7 @@ def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
     for k, jump in enumerate(struck.jumps):
         for name in belts(spec):
             if couplings[name]["slack"][k] < least:
-                yield STRUCK.format(jump.time, name)
+                yield STRUCK.format(jump.told_time, name)
 
 
 def belts(spec: Spec) -> dict[str, Belt]:

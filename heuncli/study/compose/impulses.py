@@ -152,7 +152,7 @@ class Impulses:
             for i, body in enumerate(self.setup.scene.mechanism.bodies)
         }
         before, after = jump.kinetic
-        block: Block = {"time": jump.time, "names": list(jump.names), "bodies": bodies}
+        block: Block = {"time": jump.told_time, "names": list(jump.names), "bodies": bodies}
         block |= only_of(of_one(self.shown, k), jump.causes)
         block |= {"energy_jump": after - before, "energy_before": before, "energy_after": after}
         if self.sums:

@@ -26,4 +26,4 @@ def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
     for k, jump in enumerate(struck.jumps):
         for name in rub(spec):
             if abs(couplings[name]["force"][k]) > least:
-                yield STRUCK.format(jump.time, name)
+                yield STRUCK.format(jump.told_time, name)

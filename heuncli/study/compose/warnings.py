@@ -38,7 +38,7 @@ def warnings(
     return (
         *unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
-        *sharing_warning([(jump.time, jump.shared) for jump in history.blows], setup.spec.analysis.impacts),
+        *sharing_warning([(jump.told_time, jump.shared) for jump in history.blows], setup.spec.analysis.impacts),
         *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, recovery, joints)),
         *singular,
         *slanting(setup.scene.layout, recovery.recovered),

@@ -30,7 +30,7 @@ def in_blows(spec: Spec, struck: Impulses) -> Iterator[str]:
     for k, jump in enumerate(struck.jumps):
         for name, wheel in wheels.items():
             for sentence in told(wheel, couplings[name], k):
-                yield f"in the blow at t = {jump.time:.6g} s {sentence.format(name)}"
+                yield f"in the blow at t = {jump.told_time:.6g} s {sentence.format(name)}"
 
 
 def told(wheel: RollingWheel, block: Mapping[str, Any], k: int) -> Iterator[str]:
