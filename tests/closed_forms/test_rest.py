@@ -469,7 +469,7 @@ def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that ends too early is refused, whatever it was told."""
     monkeypatch.setattr(Slopes, "left", property(lambda own: np.zeros(len(own.c))))
     monkeypatch.setattr(Slopes, "newton", lambda own, a: 0.0 * a)
-    assert "the search ended where bodies.bar still accelerates by" in refused(carriage("90 deg"))
+    assert "the search ended where joints.hinge still accelerates by" in refused(carriage("90 deg"))
 
 
 @pytest.mark.parametrize("cube", ["100", "1e-3"])
