@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.foreign_text import shown
 from heuncli.report.digits import LOADS, rough
+from heuncli.report.markdown_text import escape_line
 from heuncli.report.plurals import count
 from heuncli.report.text_table import labelled
 from heuncli.results import Estimate, Results
@@ -59,8 +59,8 @@ def write_heading(results: Results, every: bool = False) -> str:
 def write_heading_markdown(results: Results, every: bool = False) -> str:
     """The heading as markdown."""
     lines = heading(results, every)
-    body = "".join(f"- {label + ': ' if label else ''}{shown(text)}\n" for label, text in lines[1:])
-    return f"## {shown(results.title)}\n\n- heun: {results.version}\n{body}\n"
+    body = "".join(f"- {escape_line(label + ': ' * bool(label) + text)}\n" for label, text in lines[1:])
+    return f"## {escape_line(results.title)}\n\n- heun: {results.version}\n{body}\n"
 
 
 def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:

@@ -32,6 +32,8 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
         return {item}
     if isinstance(item, End):
         return {item.body} & spec.bodies.keys()
+    if type(item) is tuple:  # several of one name
+        return set().union(*(bodies_of(one, spec) for one in item))
     found: set[str] = set()
     for name, value in named_fields(item):
         if isinstance(value, End):
