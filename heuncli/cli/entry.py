@@ -11,6 +11,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import TypeVar
 
+from heuncli.announcements import listening
 from heuncli.cli import alarm, at_once, memory, plain
 from heuncli.cli.files import ReaderGone
 from heuncli.cli.output import emit, say
@@ -105,7 +106,8 @@ def _command(argv: list[str]) -> int:
         _require_limit(f"--{name.replace('_', '-')}", getattr(request, name, None))
     memory.require_some()
     limit = getattr(request, "time_limit", None)
-    return alarm.limited(lambda: command.main(request), limit, command.grace, command.phase)
+    with listening(None if getattr(request, "quiet", False) else lambda text: say(f"heun: {text}")):
+        return alarm.limited(lambda: command.main(request), limit, command.grace, command.phase)
 
 
 def _require_limit(option: str, limit: float | None) -> None:

@@ -96,14 +96,14 @@ class CoupledFit:
         spread, hard, soft = self._asked_of_rates()
         k, half = self.bodies.index(body), len(spread) // 2
         own = np.concatenate([spread[3 * k : 3 * k + 3], spread[half + 3 * k : half + 3 * k + 3]])
-        Q, R = np.linalg.qr(spread)
+        _, R = np.linalg.qr(spread)
         J = np.linalg.solve(R.T, np.concatenate([hard[0], soft[0], own]).T).T
         e = np.concatenate([hard[1], soft[1], np.zeros(len(own))])
         left = solve(J, e)[2]
         return bool(np.abs(left).max(initial=0.0) <= tolerances.RANK * np.abs(e).max(initial=0.0))
 
     def _asked_of_rates(self) -> tuple[Array, Rows, Rows]:
-        """What the freedoms move, and the rows of joints and of what is held, and of couplings, at the state's rates."""
+        """What the freedoms move; rows of joints and of what is held; rows of couplings, at the rates of the state."""
         told, now = self.now()
         motion = self.freedoms.motion(self.state)
         hard = [self._rows(motion, told.rates, self.asked.joints), *held_rates(self.scene, now, motion)]

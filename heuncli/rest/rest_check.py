@@ -7,16 +7,14 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import SolveError
 from heuncli.integration.evaluator import Evaluator
-from heuncli.kinetostatics.bodies import body_states
 from heuncli.records import replace
 from heuncli.rest.coordinates import Coordinates, resting, rounding_of
 from heuncli.rest.pose import Pose
-from heuncli.rest.reasons import no_rest
+from heuncli.rest.reasons import no_rest, no_value
 from heuncli.rest.slopes import of_springs, rounding
-from heuncli.results import Array
 
 BESIDE = 4  # poses moved by rounding
-HINT = "please report it with the spec; start nearer to the pose, or run a motion with dampers"
+HINT = "start nearer to the pose, or run a motion with dampers, which comes to rest there"
 
 
 def require_still(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> None:
@@ -40,16 +38,16 @@ def require_still(evaluator: Evaluator, coordinates: Coordinates, at: Pose) -> N
     change = coordinates.size(np.abs(coordinates.accelerations(moved) - at.accelerations).max(axis=0, initial=0.0))
     small = tolerances.SET_GOING / tolerances.SUM_ROUNDING * terms
     small = small + tolerances.PUSHED_BY_ROUNDING * change / coordinates.weights
-    if (looked_at & ~(np.abs(at.accelerations) <= small)).any():
-        raise SolveError(no_rest(f"the search ended where {fastest(evaluator, at)}", HINT))
+    if not (np.isfinite(at.accelerations).all() and np.isfinite(small).all()):
+        raise SolveError(no_value(coordinates, np.stack([at.accelerations, small])))
+    beyond = np.abs(at.accelerations) - small
+    if (looked_at & (beyond > 0.0)).any():
+        k = int(np.argmax(np.where(looked_at, beyond * coordinates.weights, -np.inf)))
+        raise SolveError(no_rest(f"the search ended where {acceleration_of(coordinates, at, k)}", HINT))
 
 
-def fastest(evaluator: Evaluator, at: Pose) -> str:
-    """The body that accelerates most, and by how much."""
-    layout = evaluator.layout
-    states = body_states(layout, at.recovered)
-    shift, turn = (np.sqrt(np.sum(a[0] ** 2, axis=1)) for a in (states.a_centre, states.alpha))
-    k = int(np.argmax(np.maximum(shift, turn * evaluator.size)))
-    how: Array = shift if shift[k] > 0.0 else turn
-    unit = "m/s\u00b2" if shift[k] > 0.0 else "rad/s\u00b2"
-    return f"bodies.{layout.mechanism.bodies[k].name} still accelerates by {how[k]:.3g} {unit}"
+def acceleration_of(coordinates: Coordinates, at: Pose, number: int) -> str:
+    """A coordinate that accelerates, and by how much: against what carries it, where drives move that."""
+    name, is_turn = coordinates.owner(number)
+    unit = "rad/s\u00b2" if is_turn else "m/s\u00b2"
+    return f"{name} still accelerates by {abs(float(at.accelerations[number])):.3g} {unit}"

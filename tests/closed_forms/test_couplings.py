@@ -11,6 +11,7 @@ import pytest
 import heuncli
 from heuncli.errors import SolveError, SpecError
 from heuncli.oscillations.study import modes
+from heuncli.report.heading import heading
 from heuncli.spec.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.gear_trains import STATE, pair, pin, wheel
@@ -360,3 +361,77 @@ def test_what_two_stops_that_are_struck_at_once_leave_open_of_a_coupling() -> No
     assert tie["open"] == ["force", "on.a.force.x", "on.ground.force.x", "on.ground.moment.z", "on.b.force.x"]
     assert np.isnan([tie["force"], tie["on"]["a"]["force"][0], tie["on"]["b"]["force"][0]]).all()
     near(struck["foundation"]["force"], (-1.5, 0.0, 0.0), 1.0, ROUNDING)
+
+
+def carried_pair(**rates: Any) -> dict[str, Any]:
+    """Two geared rotors, -2 to 1, on a frame that nothing holds; rates: angular velocities about z of some of them."""
+
+    def rotor(name: str, x: float) -> dict[str, Any]:
+        given = {"angular_velocity": [0, 0, rates[name]]} if name in rates else {}
+        return {"mass": 1, "center": [x, 0, 0], "inertia": [1, 1, 1], "points": {"o": [x, 0, 0]}} | given
+
+    frame = {"mass": 1, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0], "p": [1, 0, 0]}}
+    return {
+        "bodies": {"frame": frame, "a": rotor("a", 0.0), "b": rotor("b", 1.0)},
+        "joints": {
+            "ja": {"type": "pin", "from": "frame.o", "to": "a.o", "axis": [0, 0, 1]},
+            "jb": {"type": "pin", "from": "frame.p", "to": "b.o", "axis": [0, 0, 1]},
+        },
+        "couplings": {"mesh": {"type": "gear", "of": ["ja", "jb"], "ratio": -2}},
+        "analysis": {"type": "state"},
+    }
+
+
+def test_the_other_shaft_turns_and_not_the_frame() -> None:
+    """The rate of one gear is given: the frame stays, though to turn it, too, would be the least sum of squares."""
+    found = solved(carried_pair(a=6.0))
+    near(found.bodies["frame"]["angular_velocity"][0], (0, 0, 0), 6.0, ROUNDING)
+    near(found.bodies["b"]["angular_velocity"][0], (0, 0, -3), 6.0, ROUNDING)
+    assert "started" not in found.model
+
+
+def test_a_frame_that_has_to_turn_is_told() -> None:
+    """a - f = -2 (b - f) of two given rates: f = (a + 2 b) / 3."""
+    found = solved(carried_pair(a=5.0, b=3.0))
+    near(found.bodies["frame"]["angular_velocity"][0], (0, 0, 11 / 3), 5.0, ROUNDING)
+    (sentence,) = found.model["started"]
+    assert sentence.startswith("the couplings set in motion frame (3.667 rad/s")
+    assert ("start", sentence) in heading(found)
+
+
+def test_what_moves_though_it_could_have_stayed_is_told() -> None:
+    """One of a differential's three shafts is given 10 rad/s: b - 2 c = -10 at the least b^2 + c^2."""
+    scene = {
+        "bodies": {n: wheel(1.0, (float(k), 0, 0), 1.0) for k, n in enumerate("abc")},
+        "ground": {"points": {n.upper(): [float(k), 0, 0] for k, n in enumerate("abc")}},
+        "joints": {n: pin(f"ground.{n.upper()}", f"{n}.c") for n in "abc"},
+        "couplings": {"axle": {"type": "differential", "of": ["a", "b", "c"]}},
+        "analysis": {"type": "state"},
+    }
+    scene["joints"]["a"]["initial"] = {"rate": 10.0}
+    found = solved(scene)
+    near([found.coordinates[n]["rate"][0] for n in "abc"], (10, -2, 4), 10.0, ROUNDING)
+    (sentence,) = found.model["started"]
+    assert sentence.startswith("the couplings set in motion b (2 rad/s), c (4 rad/s): other rates meet them as well")
+
+
+@pytest.mark.parametrize(("joint", "origin"), [(None, (0.0, -2.0, 0.0)), ("line", (0.0, -2.0, 0.0)), ("ball", None)])
+def test_where_an_angular_velocity_alone_is_given_the_centre_rests(
+    joint: str | None, origin: tuple[float, ...] | None
+) -> None:
+    """w x c of the origin, and the heading says so; where a joint holds a point it decides."""
+    body = {"mass": 1, "center": [1, 0, 0], "inertia": [1, 1, 1], "angular_velocity": [0, 0, 2]}
+    scene: dict[str, Any] = {"bodies": {"b": body | {"points": {"o": [0, 0, 0]}}}, "analysis": {"type": "state"}}
+    if joint is not None:
+        scene["ground"] = {"points": {"O": [0, 0, 0]}}
+        scene["joints"] = {"j": {"type": joint, "from": "ground.O", "to": "b.o"}}
+        scene["joints"]["j"] |= {"axis": [0, 1, 0]} if joint == "line" else {}
+    found = solved(scene)
+    if origin is None:
+        assert "started" not in found.model
+        near(found.bodies["b"]["center_velocity"][0], (0, 2, 0), 2.0, ROUNDING)
+        return
+    near(found.bodies["b"]["velocity"][0], origin, 2.0, ROUNDING)
+    near(found.bodies["b"]["center_velocity"][0], (0, 0, 0), 2.0, ROUNDING)
+    (sentence,) = found.model["started"]
+    assert "its centre of mass starts at rest" in sentence and "its origin at (0, -2, 0) m/s" in sentence

@@ -13,13 +13,17 @@ from scipy.optimize import brentq, minimize_scalar
 
 from heuncli.errors import SolveError
 from heuncli.integration.run.request import MotionTask
+from heuncli.rest.coordinates import coordinates_of
 from heuncli.rest.directions import directions
+from heuncli.rest.pose import bearing
+from heuncli.rest.rest_check import require_still
 from heuncli.rest.search import MOST_STEPS
 from heuncli.rest.slopes import Slopes
 from heuncli.results import Array, Results
 from heuncli.shapes.rotations import from_vector
 from heuncli.spec.load import load
 from heuncli.study.ask.study import Study
+from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study
@@ -469,7 +473,29 @@ def test_what_is_told_is_judged(monkeypatch: pytest.MonkeyPatch) -> None:
     """A search that ends too early is refused, whatever it was told."""
     monkeypatch.setattr(Slopes, "left", property(lambda own: np.zeros(len(own.c))))
     monkeypatch.setattr(Slopes, "newton", lambda own, a: 0.0 * a)
-    assert "the search ended where bodies.bar still accelerates by" in refused(carriage("90 deg"))
+    assert "the search ended where joints.p still accelerates by 14.9 rad" in refused(carriage("90 deg"))
+
+
+SLIDER = f"""{HEAD}{POINTS}bodies: {{c: {{{BALL}}}}}
+joints: {{r: {{type: slide, from: ground.O, to: c.c, axis: [1, 0, 0]}}}}
+forces: {{f: {{type: torque, joint: r, value: "FORCE"}}}}
+"""
+
+
+@pytest.mark.parametrize(("force", "said"), [
+    ("1e-300*sqrt(r.travel)", "(forces.f) has no value"),  # on one side of the pose, by rounding
+    ("2e-3 - r.travel", "joints.r still accelerates by 0.001 m/s²"),  # of 2 kg
+])  # fmt: skip
+def test_a_slider_that_does_not_rest_is_told_in_its_unit(force: str, said: str) -> None:
+    """A law without a value beside the pose read "still accelerates by 0 rad/s²", of a slide."""
+    text = SLIDER.replace("FORCE", force).replace("type: rest", "type: state")
+    spec = load("slider.yaml", text)
+    runner = set_up(spec, reduce=False).runner
+    coordinates = coordinates_of(runner.layout)
+    with pytest.raises(SolveError) as caught:
+        require_still(runner, coordinates, bearing(runner, coordinates, 0.0, runner.layout.y0))
+    assert said in caught.value.problems[0].message
+    assert "report" not in (caught.value.problems[0].hint or "")
 
 
 @pytest.mark.parametrize("cube", ["100", "1e-3"])

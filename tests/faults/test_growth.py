@@ -8,7 +8,9 @@ import re
 import numpy as np
 import pytest
 
+from heuncli.announcements import listener, listening
 from heuncli.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.integration.run import slow_runs
 from heuncli.integration.run.pace import FIRST_LOOK, projected_steps
 from heuncli.tolerances import MOST_STEPS
 from tests.shared.scenes import solved
@@ -120,3 +122,81 @@ def test_a_limit_that_is_reached_tells_the_pace() -> None:
     found = re.search(r"reached at t = (\S+) s of 2e\+06 s; .* the rest would take about (\S+) s$", problem.message)
     assert found is not None
     assert 0.1 < float(found[2]) * float(found[1]) / 2e6 / 0.5 < 10.0  # it swings on at one pace
+
+
+GIMBAL = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0]}}
+bodies:
+  outer: {mass: 1e-12, center: [0, 0, 0], inertia: [1e-14, 1e-14, 1e-14], points: {o: [0, 0, 0]}}
+  ring: {mass: 1e-12, center: [0, 0, 0], inertia: [1e-14, 1e-14, 1e-14], points: {o: [0, 0, 0]}}
+  rotor: {mass: 1, center: [0.1, 0, 0.05], inertia: [0.01, 0.02, 0.02], points: {o: [0, 0, 0]}}
+joints:
+  a: {type: pin, from: ground.O, to: outer.o, axis: [0, 0, 1]}
+  b: {type: pin, from: outer.o, to: ring.o, axis: [0, 1, 0], initial: {angle: 1e-4, rate: -0.5}}
+  c: {type: pin, from: ring.o, to: rotor.o, axis: [0, 0, 1], initial: {rate: 0.5}}
+analysis: {duration: 1, samples: 11}
+"""
+SHEAVE = """\
+heun: 1
+space: planar
+gravity: [0, -9.81]
+ground: {points: {A: [-0.1, 2], B: [0.1, 2.5]}}
+bodies:
+  sheave: {mass: 1e-9, center: [0, 0], inertia: 1e-12, points: {o: [0, 0]}}
+  load: {mass: 1, center: [0, -1], inertia: 1e-2, points: {o: [0, -0.9]}}
+couplings:
+  r: {type: rope, through: [ground.A, {sheave: sheave.o, radius: 0.1}, ground.B], stiffness: 1e5}
+  q: {type: rope, through: [sheave.o, load.o], stiffness: 1e5}
+analysis: {duration: 1, samples: 11}
+"""
+PINNED = """\
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 2]}}
+bodies:
+  sheave: {mass: 1e-9, center: [0, 0, 2], inertia: [1e-12, 1e-12, 1e-12], points: {o: [0, 0, 2]}}
+  l: {mass: 1, center: [0.1, 0, 0], inertia: [1e-2, 1e-2, 1e-2], points: {o: [0.1, 0, 0]}}
+  m: {mass: 1.2, center: [-0.1, 0, 0], inertia: [1e-2, 1e-2, 1e-2], points: {o: [-0.1, 0, 0]}}
+joints:
+  p: {type: pin, from: ground.O, to: sheave.o, axis: [0, 1, 0]}
+  gl: {type: slide, from: {body: ground, at: [0.1, 0, 0]}, to: l.o, axis: [0, 0, 1]}
+  gm: {type: slide, from: {body: ground, at: [-0.1, 0, 0]}, to: m.o, axis: [0, 0, 1]}
+couplings: {r: {type: rope, through: [l.o, {sheave: sheave.o, radius: 0.1}, m.o], stiffness: 1e5}}
+analysis: {duration: 1, samples: 11}
+"""
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize(("text", "reasons"), [
+    (GIMBAL, (r"because of bodies\.(outer|ring) \(1e-12 kg, 1e-14", r"joints\.a and joints\.c are 1\.\de-05 rad")),
+    (SHEAVE, (r"because of bodies\.sheave \(1e-09 kg, 1e-12", r"at 2\.\de\+07 1/s, resisted by no more than 1e-09 kg")),
+])  # fmt: skip
+def test_a_run_that_is_given_up_names_the_light_body(text: str, reasons: tuple[str, ...]) -> None:
+    """A ring of a gimbal near lock; a sheave between ropes: sqrt((2 k + k + ...) / m) is some 1e7 1/s."""
+    with pytest.raises(LimitError) as raised:
+        solved(text)
+    for reason in reasons:
+        assert re.search(reason, raised.value.problems[0].message)
+
+
+class Heard(Exception):
+    """What was announced."""
+
+
+@pytest.mark.heavy
+def test_a_long_run_says_so_while_it_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sheave of 1e-9 kg on a pin, whose spin answers to rounding of the rope's pull: named, with the reason."""
+    monkeypatch.setattr(slow_runs, "PATIENCE", 0.5)
+    monkeypatch.setattr(slow_runs, "LONG", 1.0)
+
+    def hear(text: str) -> None:
+        raise Heard(text)
+
+    with (
+        pytest.raises(Heard, match=r"a long run: .*bodies\.sheave \(1e-09 kg.*rounding.*--time-limit"),
+        listening(hear),
+    ):
+        solved(PINNED)
+    assert listener() is None

@@ -23,13 +23,14 @@ def growing(scene: Evaluator, t: float, state: Array, kept: Sequence[tuple[float
     return grown(scene.layout.mechanism, (t, coordinates[1]), (earlier, coordinates[0]))
 
 
-def stalled(problems: Sequence[Problem], done: str, projected: float) -> HeunError:
-    """Why a run does not get on: what grows, else how many steps it would take."""
+def stalled(problems: Sequence[Problem], done: str, projected: float, cause: str = "") -> HeunError:
+    """Why a run does not get on: what grows, else how many steps it would take, and for which cause, a sentence."""
     if problems:
         return SolveError(*problems)
     needed = f"about {projected:.1g} would be needed" if projected < math.inf else "no number of them will do"
-    hint = "look for loads, rates, stiffness or friction far beyond the others, or end the run before"
+    hint = "look for loads, rates, stiffness or friction far beyond the others, or an inertia far below; or end earlier"
     message = f"{done}; for all of it {needed}, and {tolerances.MOST_STEPS} is the most"
+    message += f"; {cause}" if cause else ""
     return LimitError(Problem("step-limit", message, hint=hint))
 
 

@@ -63,7 +63,9 @@ def require_progress(progress: Progress, most_steps: int) -> None:
     irregular = not progress.kernel.method.determined
     projected = hopeless(steps.column("ends"), last, tolerances.MOST_STEPS, irregular=irregular)
     if projected is not None:
-        from heuncli.integration.diagnosis.growth import growing, stalled  # only on the way to an error
+        from heuncli.integration.diagnosis.fast_body import why_steps_are_short  # only on the way to an error
+        from heuncli.integration.diagnosis.growth import growing, stalled
 
         problems = growing(progress.scene, progress.t, progress.state, progress.passed)
-        raise stalled(problems, f"{steps.count} {done}", projected)
+        cause = "" if problems else why_steps_are_short(progress.scene, progress.t, progress.state, *progress.pace)
+        raise stalled(problems, f"{steps.count} {done}", projected, cause)

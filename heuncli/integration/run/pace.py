@@ -56,11 +56,14 @@ def hopeless(ends: Array, last: float, most: int, *, irregular: bool = True) -> 
     return steps if steps > tolerances.HOPELESS * most * math.sqrt(most / len(ends)) else None
 
 
+def seconds_left(ends: Array, last: float, took: float) -> float:
+    """What the rest of a run would take at the pace of its last steps [s]; ends (n,): of the steps done in `took` s."""
+    n = len(ends)
+    begun = float(ends[-1] - ends[-1 - n // PARTS]) if n >= PARTS else 0.0
+    return float(last - ends[-1]) / begun * took / PARTS if begun > 0.0 else math.inf
+
+
 def in_words(ends: Array, last: float, took: float) -> str:
     """What a run that was given up would have taken, at the pace of its last steps; took: those done [s]."""
-    n = len(ends)
-    if n < FIRST_LOOK:
-        return ""
-    begun = float(ends[-1] - ends[-1 - n // PARTS])
-    left = float(last - ends[-1]) / begun * took / PARTS if begun > 0.0 else math.inf
+    left = seconds_left(ends, last, took) if len(ends) >= FIRST_LOOK else math.inf
     return f"; at the pace of its last steps the rest would take about {left:.1g} s" if left < math.inf else ""

@@ -11,6 +11,8 @@ from heuncli.integration.run.step_records import Steps
 from heuncli.records import record
 from heuncli.results import Array
 
+LAST_STEPS = 101  # whose mean length tells the pace
+
 
 @record
 class Progress:
@@ -40,6 +42,12 @@ class Progress:
     def state(self) -> Array:
         """The scene's state that it has reached, (n,)."""
         return self.moving.state(self.t, self.integrated_state)
+
+    @property
+    def pace(self) -> tuple[float, float]:
+        """The mean length of its last steps [s], and their tolerance."""
+        ends = self.steps.column("ends")[-LAST_STEPS:]
+        return (float(ends[-1] - ends[0]) / (len(ends) - 1) if len(ends) > 1 else 0.0), self.kernel.start.local
 
     @property
     def passed(self) -> list[tuple[float, Array]]:

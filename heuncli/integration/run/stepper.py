@@ -33,6 +33,7 @@ from heuncli.integration.run.kernel_loop import (
 from heuncli.integration.run.limits import chunk_of, require_progress, require_time
 from heuncli.integration.run.progress import Progress
 from heuncli.integration.run.request import MotionTask, StoppingRules
+from heuncli.integration.run.slow_runs import SlowRunWatch
 from heuncli.integration.run.step_records import GrowingRows, Steps
 from heuncli.integration.segments import Segment, Segments, just_before, smooth_segments
 from heuncli.integration.trajectory import Trajectory
@@ -87,6 +88,7 @@ class Stepper:
         self.events = event_watch(progress, self.segments) if rules.events else None
         self.stiffness: StiffnessWatch | None = None
         self.begun = time.monotonic()
+        self.slow = SlowRunWatch(self.begun)
 
     def to_end(self) -> Ending | None:
         """One segment after the other; where the run ends before its last instant, if it does.
@@ -185,6 +187,7 @@ class Stepper:
             require_time(self.progress, self.request.deadline, self.begun)
         if code in GOES_ON:
             require_progress(self.progress, self.request.most_steps)
+            self.slow.look(self.progress)
             if self.events is not None:
                 self.events.require_as_before(self.pieces.count)
         if code == STIFF:
