@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.commands.find.course import MeasureCourse, Sample
+from heuncli.variants.course import MeasureCourse, Sample
 from heuncli.commands.find.results import CourseFindings
 from heuncli.commands.find.search import is_steep
 from heuncli.commands.find.study import look

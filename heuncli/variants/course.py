@@ -5,13 +5,17 @@
 Between two neighbours g is taken for the cubic through them and one more on either side. How far that may be off is
 seen from the parabolas that leave one of the four out, from the corner at which the lines through either two would meet
 (a measure such as the largest of several bends there), and from how far off it was wherever it was asked since.
+
+No polynomial follows a resonance or a pole. There 1/measure^2 is smooth: the parabola through its three values about a
+largest magnitude says how far that may grow between them, also beyond all bounds.
 """
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, insort
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -27,18 +31,24 @@ UNEVEN = 0.25  # of the spacing: by so much places of the scan are shifted at mo
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 DISTRUST = 1.25
 MOST_DISTRUST = 16.0
+ISOLATED = 1e-3  # of the spacing: singular poses over less than that are places, not a part of the course
+SINGULAR = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
+BEYOND_POLE = 0.5  # of an interval: by so much the pole that one side foretells may lie outside of it
 
 
 class Sample(NamedTuple):
     """What is known at a place: how far the measure lies above the value, and its error.
 
-    gap: None where there is none, and why stands for a reason: its code and a sentence.
+    gap: None where there is none, and why stands for a reason: its code and a sentence. singular: its run passes a
+    singular pose; withheld: what its gap is, where it is not taken for a neighbour of the others because of that.
     """
 
     x: float
     gap: float | None
     error: float = 0.0
     why: tuple[str, str] = ("", "")
+    singular: bool = False
+    withheld: float | None = None
 
     @property
     def side(self) -> int | None:
@@ -57,6 +67,13 @@ class Between(NamedTuple):
     noise: float
 
 
+class Peak(NamedTuple):
+    """Where the magnitude of the measure may be greatest between two neighbours, and how large; inf: a pole."""
+
+    place: float
+    size: float
+
+
 class SpentError(Exception):
     """As many places have been asked as may be."""
 
@@ -65,11 +82,18 @@ class MeasureCourse:
     """What is known of g over an interval; asks for more.
 
     jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,
-    nearer together than places are told apart.
+    nearer together than places are told apart. given_up: neighbours between which a place was asked for already.
     """
 
-    def __init__(self, ask: Callable[[float], Sample], low: float, high: float, count: int, most: int) -> None:
-        """ask: what is known at a place; count: places of the scan, evenly spaced; most: of all that may be asked."""
+    def __init__(
+        self, ask: Callable[[float], Sample], low: float, high: float, count: int, most: int, value: float = 0.0
+    ) -> None:
+        """ask: what is known at a place; count: places of the scan, evenly spaced; most: of all that may be asked.
+
+        value: what g is counted from, the measure less g.
+        """
+        self.value = value
+        self.given_up: set[tuple[float, float]] = set()
         self._ask, self._most = ask, most
         self.low, self.high = low, high
         self.finest = max(1e-10 * (high - low), 4.0 * EPS * max(abs(low), abs(high)))
@@ -118,6 +142,73 @@ class MeasureCourse:
         one, other = self.samples[i], self.samples[i + 1]
         return one.gap is None or other.gap is None or (one.x, other.x) in self.jumps
 
+    def peak(self, i: int) -> Peak | None:
+        """How far the magnitude of the measure may grow between a sample and the next; None: nothing tells of a peak."""
+        if self.parted(i):
+            return None
+        one, other = self.samples[i], self.samples[i + 1]
+        if self._measure(i) * self._measure(i + 1) < 0.0:
+            place = self._pole(i)
+            return None if place is None else Peak(place, math.inf)
+        found = [peak for k in (i, i + 1) if (peak := self._top(k)) is not None]
+        inside = [peak for peak in found if one.x < peak.place < other.x]
+        return max(inside, key=lambda peak: peak.size, default=None)
+
+    def _measure(self, i: int) -> float:
+        return _gap(self.samples[i]) + self.value
+
+    def _top(self, k: int) -> Peak | None:
+        """The top of 1/measure^2 through a sample that is the largest of three."""
+        if not 0 < k < len(self.samples) - 1 or self.parted(k - 1) or self.parted(k):
+            return None
+        x = [self.samples[j].x for j in (k - 1, k, k + 1)]
+        m = [self._measure(j) for j in (k - 1, k, k + 1)]
+        noise = NOISE * max(self.samples[j].error for j in (k - 1, k, k + 1))
+        if m[0] * m[1] <= 0.0 or m[1] * m[2] <= 0.0 or abs(m[1]) - max(abs(m[0]), abs(m[2])) <= noise:
+            return None
+        y = [(m[1] / each) ** 2 for each in m]  # of the largest's
+        before, after = (y[1] - y[0]) / (x[1] - x[0]), (y[2] - y[1]) / (x[2] - x[1])
+        bend = (after - before) / (x[2] - x[0])
+        middle = before + bend * (x[1] - x[0])  # the slope at the sample
+        place = x[1] - 0.5 * middle / bend
+        least = 1.0 - 0.25 * middle * middle / bend
+        return Peak(place, abs(m[1]) / math.sqrt(least) if least > 0.0 else math.inf)
+
+    def _pole(self, i: int) -> float | None:
+        """Where 1/measure passes 0 between neighbours of different signs, if it does so as far as one side foretells."""
+        one, other = self.samples[i], self.samples[i + 1]
+        width = other.x - one.x
+        a, b = 1.0 / self._measure(i), 1.0 / self._measure(i + 1)
+        for k, far, way in ((i, i - 1, 1.0), (i + 1, i + 2, -1.0)):
+            if not 0 <= far < len(self.samples) or self.parted(min(k, far)):
+                continue
+            own, outer = self._measure(k), self._measure(far)
+            if own * outer <= 0.0 or abs(outer) >= abs(own):
+                return None
+            fall = 1.0 / abs(outer) - 1.0 / abs(own)
+            ahead = abs(self.samples[k].x - self.samples[far].x) / abs(own) / fall
+            if ahead > (1.0 + BEYOND_POLE) * width:
+                return None
+        if not (i > 0 and not self.parted(i - 1)) and not (i + 2 < len(self.samples) and not self.parted(i + 1)):
+            return None  # two alone tell of nothing
+        margin = 0.25 * self.finest
+        return min(max(one.x + width * a / (a - b), one.x + margin), other.x - margin)
+
+    def withhold_isolated(self) -> None:
+        """Take no sample for a neighbour whose run passes a singular pose, where those beside it do not.
+
+        Where a wider stretch of them is found, it is a course of its own kind, and they are neighbours again.
+        """
+        for is_singular, members in groupby(range(len(self.samples)), key=lambda i: self.samples[i].singular):
+            places = list(members)
+            if not is_singular:
+                continue
+            beside = [k for k in (places[0] - 1, places[-1] + 1) if 0 <= k < len(self.samples)]
+            wide = self.samples[places[-1]].x - self.samples[places[0]].x
+            alone = wide <= ISOLATED * self.spacing and any(self.samples[k].gap is not None for k in beside)
+            for k in places:
+                self.samples[k] = withheld(self.samples[k]) if alone else restored(self.samples[k])
+
     @property
     def range(self) -> float:
         """How far apart the least and the greatest lie that were found."""
@@ -157,6 +248,18 @@ class MeasureCourse:
                 found.append(self.samples[k])
                 from_ = self.samples[k].x
         return found
+
+
+def withheld(sample: Sample) -> Sample:
+    """A sample whose gap is that of a singular pose alone."""
+    if sample.gap is None:
+        return sample
+    return sample._replace(gap=None, withheld=sample.gap, why=("singular-pose", SINGULAR))
+
+
+def restored(sample: Sample) -> Sample:
+    """A sample with its gap, if it was withheld."""
+    return sample if sample.withheld is None else sample._replace(gap=sample.withheld, withheld=None, why=("", ""))
 
 
 def uneven(low: float, high: float, count: int) -> list[float]:
