@@ -31,6 +31,8 @@ UNEVEN = 0.25  # of the spacing: by so much places of the scan are shifted at mo
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 DISTRUST = 1.25
 MOST_DISTRUST = 16.0
+GRADED = 4.0  # times: magnitudes of neighbours that run through more are followed by their logarithms
+LARGEST_LOG = 690.0  # of a magnitude that is a number
 ISOLATED = 1e-3  # of the spacing: singular poses over less than that are places, not a part of the course
 SINGULAR = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
 BEYOND_POLE = 0.5  # of an interval: by so much the pole that one side foretells may lie outside of it
@@ -82,7 +84,8 @@ class MeasureCourse:
     """What is known of g over an interval; asks for more.
 
     jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,
-    nearer together than places are told apart. given_up: neighbours between which a place was asked for already.
+    nearer together than places are told apart. given_up: neighbours between which a place was asked for already;
+    certain: places among which it is known that none is to be asked for, and the distrust at which that was found.
     """
 
     def __init__(
@@ -94,6 +97,7 @@ class MeasureCourse:
         """
         self.value = value
         self.given_up: set[tuple[float, float]] = set()
+        self.certain: set[tuple[float, ...]] = set()
         self._ask, self._most = ask, most
         self.low, self.high = low, high
         self.finest = max(1e-10 * (high - low), 4.0 * EPS * max(abs(low), abs(high)))
@@ -179,18 +183,17 @@ class MeasureCourse:
         one, other = self.samples[i], self.samples[i + 1]
         width = other.x - one.x
         a, b = 1.0 / self._measure(i), 1.0 / self._measure(i + 1)
-        for k, far, way in ((i, i - 1, 1.0), (i + 1, i + 2, -1.0)):
+        foretold = False
+        for k, far in ((i, i - 1), (i + 1, i + 2)):
             if not 0 <= far < len(self.samples) or self.parted(min(k, far)):
                 continue
             own, outer = self._measure(k), self._measure(far)
-            if own * outer <= 0.0 or abs(outer) >= abs(own):
-                return None
-            fall = 1.0 / abs(outer) - 1.0 / abs(own)
-            ahead = abs(self.samples[k].x - self.samples[far].x) / abs(own) / fall
-            if ahead > (1.0 + BEYOND_POLE) * width:
-                return None
-        if not (i > 0 and not self.parted(i - 1)) and not (i + 2 < len(self.samples) and not self.parted(i + 1)):
-            return None  # two alone tell of nothing
+            if own * outer > 0.0 and abs(outer) < abs(own):
+                fall = 1.0 / abs(outer) - 1.0 / abs(own)
+                ahead = abs(self.samples[k].x - self.samples[far].x) / abs(own) / fall
+                foretold = foretold or ahead <= (1.0 + BEYOND_POLE) * width
+        if not foretold:
+            return None
         margin = 0.25 * self.finest
         return min(max(one.x + width * a / (a - b), one.x + margin), other.x - margin)
 
@@ -228,13 +231,34 @@ class MeasureCourse:
         if len(whole) == 2:
             return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))), noise)
         parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
-        others = [polynomial(part, x) for part in parts]
+        if self._is_graded(whole, bool(left and right)):
+            expected, *others = (self._by_logarithm(part, x) for part in (whole, *parts))
+        else:
+            others = [polynomial(part, x) for part in parts]
         if left and right:
             others.append(corner([left[0], one], [other, right[0]], x, expected))
         off = np.maximum(np.max([np.abs(each - expected) for each in others], axis=0) - noise, 0.0)
         known = [_gap(sample) for sample in whole]
         steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
         return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
+
+    def _is_graded(self, samples: list[Sample], on_both_sides: bool) -> bool:
+        """Whether the measure runs through magnitudes, as towards a pole, and may be followed by its logarithm.
+
+        Not where it may touch a value at 0 or behind it, which no logarithm reaches.
+        """
+        m = [_gap(sample) + self.value for sample in samples]
+        if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < GRADED * min(map(abs, m)):
+            return False
+        steps = [abs(b) - abs(a) for a, b in pairwise(m)]
+        return m[0] * self.value > 0.0 or (on_both_sides and (min(steps) > 0.0 or max(steps) < 0.0))
+
+    def _by_logarithm(self, samples: list[Sample], x: Array) -> Array:
+        """The course through some samples, of which the logarithm of the measure is a polynomial."""
+        sign = math.copysign(1.0, _gap(samples[0]) + self.value)
+        logs = [sample._replace(gap=math.log(abs(_gap(sample) + self.value))) for sample in samples]
+        found: Array = sign * np.exp(np.minimum(polynomial(logs, x), LARGEST_LOG)) - self.value
+        return found
 
     def beside(self, i: int, way: int) -> list[Sample]:
         """Up to two samples of the stretch before a sample (way -1) or behind its next (1); the nearest first."""

@@ -410,6 +410,11 @@ def _touches(course: KnownCourse, told: Any, wrong: list[str]) -> None:
         if not any(a - close <= x <= b + close for a, b in reached):
             wrong.append("missed a touch")
     for one in told["touches"]:
+        if course.value == 0.0:
+            zeros = (*course.touches, *course.roots, *(x for pair in course.flat for x in pair))
+            if not any(one["from"] - close <= x <= one["to"] + close for x in zeros):
+                wrong.append("false touch")
+            continue
         size = max(abs(course.value), abs(one["measure"]))
         known = course.f(mp.mpf(one["x"]))
         if known is None or abs(float(known - mp.mpf(course.value))) > 1e-11 * size + 1e-18 * abs(told["greatest"]["measure"]):

@@ -20,6 +20,7 @@ NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: nearer to a jump or an edge th
 LESS = 0.25  # of the gap that is left: an interpolation that gains less than that is followed by a halving
 STEEP = 10.0  # times what the slope outside leads to expect: more than that across the narrowest bracket is a jump
 WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
+PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
 KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
 GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
 
@@ -57,16 +58,20 @@ def crossed(course: MeasureCourse) -> Iterator[int]:
 
 def widest(course: MeasureCourse) -> int | None:
     """The widest two neighbours between which it is not certain what happens; None: there are none."""
-    found = [
-        (other.x - one.x, -i)
-        for i, one, other in course.pairs()
-        if (one.x, other.x) not in course.given_up and unsure(course, i)
-    ]
-    return -max(found)[1] if found else None
+    ends = ends_of_course(course)
+    pairs = [(other.x - one.x, -i) for i, one, other in course.pairs() if (one.x, other.x) not in course.given_up]
+    for _, i in sorted(pairs, reverse=True):
+        around = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
+        if around in course.certain:
+            continue
+        if unsure(course, -i, ends):
+            return -i
+        course.certain.add(around)
+    return None
 
 
-def unsure(course: MeasureCourse, i: int) -> bool:
-    """Whether a place between two neighbours is to be asked."""
+def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
+    """Whether a place between two neighbours is to be asked; ends: ends_of_course."""
     one, other = course.samples[i], course.samples[i + 1]
     width = other.x - one.x
     if one.gap is None or other.gap is None:
@@ -75,7 +80,7 @@ def unsure(course: MeasureCourse, i: int) -> bool:
         return False
     if place_of_peak(course, i) is not None:
         return True
-    if near_jump(course, one, other):
+    if near_jump(course, one, other, ends):
         return False
     expected = course.between(i)
     side, error = one.side or other.side, max(one.error, other.error)
@@ -85,11 +90,15 @@ def unsure(course: MeasureCourse, i: int) -> bool:
     return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
 
 
-def near_jump(course: MeasureCourse, one: Sample, other: Sample) -> bool:
+def ends_of_course(course: MeasureCourse) -> list[tuple[float, float]]:
+    """The neighbours between which the course jumps, is upright, or ends."""
+    ends = [(a.x, b.x) for _, a, b in course.pairs() if (a.gap is None) != (b.gap is None)]
+    return [*course.jumps, *course.steep, *ends]
+
+
+def near_jump(course: MeasureCourse, one: Sample, other: Sample, ends: list[tuple[float, float]]) -> bool:
     """Whether the course jumps or ends right beside two neighbours: towards a pole it is never certain."""
     margin = NEAR_JUMP * course.spacing
-    ends = [*course.jumps, *course.steep]
-    ends += [(a.x, b.x) for _, a, b in course.pairs() if (a.gap is None) != (b.gap is None)]
     return any(low - margin <= one.x and other.x <= high + margin for low, high in ends)
 
 
@@ -169,18 +178,26 @@ def keeps_its_size(course: MeasureCourse, one: Sample, other: Sample) -> bool:
 
     A jump does, and a pole changes by more; what is only upright there, as a root of x - c, changes by less.
     """
-    i = next(i for i, sample, _ in course.pairs() if sample is one)
     reach = 0.5 * WIDER * (other.x - one.x)
-    outer = []
-    for end, k, way in ((one, i - 1, -1), (other, i + 2, 1)):
-        parted = not 0 <= k < len(course.samples) or course.parted(min(k, k - way))
-        near = None if parted else course.samples[k]
-        if near is None or abs(near.x - end.x) > reach:
-            x = min(max(end.x + way * reach, course.low), course.high)
-            near = course.at(x) if x != end.x else end
-        outer.append(near if near.gap is not None else end)
+    before, behind = outside(course, one, -1, reach), outside(course, other, 1, reach)
+    if behind.x - before.x < PROVES * (other.x - one.x):
+        return False
     across = abs((other.gap or 0.0) - (one.gap or 0.0)) + one.error + other.error
-    return across >= KEPT * abs((outer[1].gap or 0.0) - (outer[0].gap or 0.0))
+    return across >= KEPT * abs((behind.gap or 0.0) - (before.gap or 0.0))
+
+
+def outside(course: MeasureCourse, end: Sample, way: int, reach: float) -> Sample:
+    """A sample about so far outside of another one, as far as the course goes on there. Raises SpentError."""
+    k, best = course.samples.index(end), end
+    while 0 <= k + way < len(course.samples) and not course.parted(k + min(way, 0)):
+        k += way
+        if abs(course.samples[k].x - end.x) > reach:
+            found = course.at(end.x + way * reach)
+            return found if found.gap is not None else best
+        best = course.samples[k]
+        if abs(best.x - end.x) >= 0.5 * reach:
+            return best
+    return best
 
 
 def root(course: MeasureCourse, one: Sample, other: Sample) -> float:
