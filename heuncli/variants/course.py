@@ -226,15 +226,15 @@ class MeasureCourse:
         x = one.x + GRID * (other.x - one.x) if places is None else places
         if left and right and places is None:
             x = np.sort(np.append(x, meeting(left[0], one, other, right[0])))
-        expected = polynomial(whole, x)
         noise = NOISE * max(sample.error for sample in whole)
         if len(whole) == 2:
+            expected = polynomial(whole, x)
             return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))), noise)
         parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
+        models = [[polynomial(part, x) for part in (whole, *parts)]]
         if self._is_graded(whole, bool(left and right)):
-            expected, *others = (self._by_logarithm(part, x) for part in (whole, *parts))
-        else:
-            others = [polynomial(part, x) for part in parts]
+            models.append([self._by_logarithm(part, x) for part in (whole, *parts)])
+        expected, *others = min(models, key=lambda model: float(np.max(np.abs(np.array(model[1:]) - model[0]))))
         if left and right:
             others.append(corner([left[0], one], [other, right[0]], x, expected))
         off = np.maximum(np.max([np.abs(each - expected) for each in others], axis=0) - noise, 0.0)

@@ -16,7 +16,7 @@ from itertools import groupby
 
 from heuncli.variants.course import APART, MeasureCourse, Sample, slope
 from heuncli.commands.find.results import CourseJump, Crossing, EdgeKind, Met, MetEdge, OpenBracket, Touch, UnsolvedStretch
-from heuncli.commands.find.touches import is_touch, least_distances
+from heuncli.commands.find.touches import least_distances, touch_at
 from heuncli.named_tuples import NamedTuple
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
@@ -65,9 +65,9 @@ def groups(course: MeasureCourse) -> list[SideGroup]:
 def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump | OpenBracket]:
     """Where the course meets its value, jumps across it, or passes it in a way that is not known."""
     found = groups(course)
-    for left, middle, right in least_distances(course):
-        if is_touch(course, course.samples.index(middle)):
-            yield Touch(middle, left.x, right.x, middle.side or 0)
+    for _, middle, _ in least_distances(course):
+        if (reached := touch_at(course, middle)) is not None:
+            yield Touch(middle, *reached, middle.side or 0)
     for k, group in enumerate(found):
         before = found[k - 1].side if k else None
         after = found[k + 1].side if k + 1 < len(found) else None

@@ -10,19 +10,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.variants.course import MeasureCourse, Sample
+from heuncli.variants.course import NOISE, MeasureCourse, Sample
 
 POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
 PLAUSIBLE = 4.0  # times: what the power foretells of the sample in the middle, and what it is
-FALLS = 0.5  # of |g|: a step that gains less ends the way
+FALLS = 0.5  # of |g|: a step that gains less ends the way, and a sample that lies less below its neighbours is none
+REACH = 3.0  # least distances: as far as |g| is to double on both sides of a touch
 MOST = 60  # steps towards one touch
 TWICE = 2.0
 
 
 def find_touches(course: MeasureCourse) -> None:
     """Follow every least distance from the value that may be none. Raises SpentError."""
-    for x in [sample.x for _, sample, _ in least_distances(course)]:
+    for x in [middle.x for left, middle, right in least_distances(course) if is_deep(left, middle, right)]:
         follow(course, x)
+
+
+def is_deep(left: Sample, middle: Sample, right: Sample) -> bool:
+    """Whether |g| falls to a sample by far more than its error, which is far below what is left of it."""
+    return NOISE * middle.error < size(middle) <= FALLS * min(size(left), size(right))
 
 
 def least_distances(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]]:
@@ -67,19 +73,31 @@ def is_narrow(course: MeasureCourse, left: Sample, middle: Sample, right: Sample
 
 
 def confirm(course: MeasureCourse, middle: Sample) -> None:
-    """Ask on both sides of a place, the least distance off. Raises SpentError."""
-    for way in (-1.0, 1.0):
+    """Ask on both sides of a place, two least distances off. Raises SpentError."""
+    for way in (-2.0, 2.0):
         x = middle.x + way * course.finest
         if course.low < x < course.high:
             course.look(x)
 
 
-def is_touch(course: MeasureCourse, i: int) -> bool:
-    """Whether |g| at a sample is no more than half of what it is the least distance beside it, on both sides."""
-    left, middle, right = course.samples[i - 1 : i + 2]
-    reach = 1.5 * course.finest
-    near = middle.x - left.x <= reach and right.x - middle.x <= reach
-    return near and size(left) >= TWICE * size(middle) and size(right) >= TWICE * size(middle)
+def touch_at(course: MeasureCourse, middle: Sample) -> tuple[float, float] | None:
+    """From where to where a sample is told from a touch no better than places are; None where it is none.
+
+    It is one if |g| doubles on both sides within some least distances.
+    """
+    i = course.samples.index(middle)
+    found: list[float] = []
+    for way in (-1, 1):
+        k = i
+        while 0 <= k + way < len(course.samples) and not course.parted(k + min(way, 0)):
+            k += way
+            one = course.samples[k]
+            if abs(one.x - middle.x) > REACH * course.finest or one.side != middle.side:
+                return None
+            if size(one) >= TWICE * size(middle):
+                found.append(one.x)
+                break
+    return (found[0], found[1]) if len(found) == 2 else None
 
 
 def foretold(left: Sample, middle: Sample, right: Sample) -> float | None:
