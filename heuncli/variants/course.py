@@ -97,6 +97,7 @@ class MeasureCourse:
         """
         self.value = value
         self.given_up: set[tuple[float, float]] = set()
+        self.usual = math.inf  # magnitude of the measure over the scan
         self.certain: set[tuple[float, ...]] = set()
         self._ask, self._most = ask, most
         self.low, self.high = low, high
@@ -112,6 +113,7 @@ class MeasureCourse:
         """Look at the places of the scan: the ends first, so that a scan cut short has them."""
         for x in (self._scan[0], self._scan[-1], *self._scan[1:-1]):
             self.at(x)
+        self.usual = float(np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples]))
 
     def at(self, x: float) -> Sample:
         """What is known at a place. Raises SpentError."""

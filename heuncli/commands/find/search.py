@@ -22,6 +22,7 @@ STEEP = 10.0  # times what the slope outside leads to expect: more than that acr
 WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
 PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
 KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
+FAR = 1e4  # times the value, and what is usual in the scan
 GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
 
 
@@ -80,7 +81,7 @@ def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bo
         return False
     if place_of_peak(course, i) is not None:
         return True
-    if near_jump(course, one, other, ends):
+    if near_jump(course, one, other, ends) or is_far(course, one, other):
         return False
     expected = course.between(i)
     side, error = one.side or other.side, max(one.error, other.error)
@@ -102,6 +103,14 @@ def near_jump(course: MeasureCourse, one: Sample, other: Sample, ends: list[tupl
     return any(low - margin <= one.x and other.x <= high + margin for low, high in ends)
 
 
+def is_far(course: MeasureCourse, one: Sample, other: Sample) -> bool:
+    """Whether two neighbours lie so far off, beside a pole, that the course does not come back between them."""
+    if not one.side or one.side != other.side:
+        return False
+    least = min(abs((sample.gap or 0.0) + course.value) for sample in (one, other))
+    return least > FAR * max(course.usual, abs(course.value))
+
+
 def place_of_peak(course: MeasureCourse, i: int) -> float | None:
     """Where a peak or a pole between two neighbours may reach the value; None: nothing tells of one that does."""
     one, other = course.samples[i], course.samples[i + 1]
@@ -109,7 +118,7 @@ def place_of_peak(course: MeasureCourse, i: int) -> float | None:
     if peak is None or not one.side or one.side != other.side:
         return None
     if np.isinf(peak.size) and (one.gap + course.value) * (other.gap + course.value) < 0.0:  # type: ignore[operator]
-        return peak.place
+        return place_inside(one, other, peak.place)
     largest = max((sample.gap or 0.0) + course.value for sample in (one, other)) if course.value > 0.0 else min(
         (sample.gap or 0.0) + course.value for sample in (one, other)
     )

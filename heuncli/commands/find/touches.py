@@ -13,8 +13,8 @@ from collections.abc import Iterator
 from heuncli.variants.course import NOISE, MeasureCourse, Sample
 
 POWERS = (1.0, 1.5, 2.0, 3.0, 4.0, 6.0)
-PLAUSIBLE = 4.0  # times: what the power foretells of the sample in the middle, and what it is
-FALLS = 0.5  # of |g|: a step that gains less ends the way, and a sample that lies less below its neighbours is none
+PLAUSIBLE = 3.0  # times: what the power foretells of the sample in the middle, and what it is
+FALLS = 0.5  # of |g|: a step that gains less ends the way, and a sample less below both neighbours is none
 REACH = 3.0  # least distances: as far as |g| is to double on both sides of a touch
 MOST = 60  # steps towards one touch
 TWICE = 2.0
@@ -28,7 +28,7 @@ def find_touches(course: MeasureCourse) -> None:
 
 def is_deep(left: Sample, middle: Sample, right: Sample) -> bool:
     """Whether |g| falls to a sample by far more than its error, which is far below what is left of it."""
-    return NOISE * middle.error < size(middle) <= FALLS * min(size(left), size(right))
+    return NOISE * middle.error < size(middle) <= FALLS * max(size(left), size(right))
 
 
 def least_distances(course: MeasureCourse) -> Iterator[tuple[Sample, Sample, Sample]]:
