@@ -113,7 +113,9 @@ class MeasureCourse:
         """Look at the places of the scan: the ends first, so that a scan cut short has them."""
         for x in (self._scan[0], self._scan[-1], *self._scan[1:-1]):
             self.at(x)
-        self.usual = float(np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples]))
+        self.usual = float(
+            np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples])
+        )
 
     def at(self, x: float) -> Sample:
         """What is known at a place. Raises SpentError."""

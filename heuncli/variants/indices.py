@@ -54,7 +54,11 @@ def sobol_indices(rows: Array, repetitions: Array | None = None) -> tuple[SobolI
     v = 0.5 * (A**2 + B**2)
     if not float(v.mean()) > 0.0:
         return None
-    units = np.arange(n) * min(n, MOST_UNITS) // n if repetitions is None else np.unique(repetitions, return_inverse=True)[1]
+    units = (
+        np.arange(n) * min(n, MOST_UNITS) // n
+        if repetitions is None
+        else np.unique(repetitions, return_inverse=True)[1]
+    )
     weights = _drawings(int(units.max()) + 1) if n >= LEAST_BOUNDED else None
     return tuple(
         SobolIndices(_ratio(B * (f - A), v, units, weights), _ratio(0.5 * (A - f) ** 2, v, units, weights))

@@ -228,7 +228,9 @@ def jump(rng: Rng) -> KnownCourse:
     value = float(rng.choice([rng.normal(), 0.5 * (a + c), a + 1e-3 * b]))
     V = mp.mpf(value)
     roots = [*inside(low, j, [J + (V - mp.mpf(a)) / mp.mpf(b)]), *inside(j, high, [J + (V - mp.mpf(c)) / mp.mpf(d)])]
-    return KnownCourse("jump", formula, low, high, value, f, tuple(roots), (), (J,) if (a - value) * (c - value) < 0 else ())
+    return KnownCourse(
+        "jump", formula, low, high, value, f, tuple(roots), (), (J,) if (a - value) * (c - value) < 0 else ()
+    )
 
 
 def kink(rng: Rng) -> KnownCourse:
@@ -332,7 +334,17 @@ def found_in(course: KnownCourse, relation: str, folder: Path) -> Any:
     )
     spec.write_text(SPEC.format(start=start, formula=course.formula), encoding="utf-8")
     condition = f"joints.w.force.x {relation} {course.value!r}"
-    words = ["find", str(spec), f"x={course.low!r}:{course.high!r}", condition, "--format", "json", "-o", str(out), "-q"]
+    words = [
+        "find",
+        str(spec),
+        f"x={course.low!r}:{course.high!r}",
+        condition,
+        "--format",
+        "json",
+        "-o",
+        str(out),
+        "-q",
+    ]
     assert enter(words) == 0, course
     return json.loads(out.read_text(encoding="utf-8"))
 
@@ -395,7 +407,9 @@ def _crossings(course: KnownCourse, told: Any, wrong: list[str], ratios: list[fl
             (abs(float(mp.mpf(one["x"]) - x)) for x in (*course.roots, *course.touches, *course.edges)),
             default=math.inf,
         )
-        off = min([off, *(0.0 if a <= one["x"] <= b else min(abs(one["x"] - a), abs(one["x"] - b)) for a, b in course.flat)])
+        off = min(
+            [off, *(0.0 if a <= one["x"] <= b else min(abs(one["x"] - a), abs(one["x"] - b)) for a, b in course.flat)]
+        )
         if off > one["error"] + _rounding(course, one["x"]):
             wrong.append("false crossing" if off > 1e-6 * (course.high - course.low) else "crossing out of its error")
         if one["error"] > 0.0:
@@ -417,7 +431,9 @@ def _touches(course: KnownCourse, told: Any, wrong: list[str]) -> None:
             continue
         size = max(abs(course.value), abs(one["measure"]))
         known = course.f(mp.mpf(one["x"]))
-        if known is None or abs(float(known - mp.mpf(course.value))) > 1e-11 * size + 1e-18 * abs(told["greatest"]["measure"]):
+        if known is None or abs(float(known - mp.mpf(course.value))) > 1e-11 * size + 1e-18 * abs(
+            told["greatest"]["measure"]
+        ):
             wrong.append("false touch")
 
 
@@ -477,7 +493,9 @@ def _met(course: KnownCourse, relation: str, told: Any, wrong: list[str]) -> Non
 
 def binned(ratios: list[float]) -> str:
     counts = Counter(next((f"<= {b:g}" for b in BINS if r <= b), f"> {BINS[-1]:g}") for r in ratios)
-    return ", ".join(f"{name}: {counts[name]}" for name in [*(f"<= {b:g}" for b in BINS), f"> {BINS[-1]:g}"] if counts[name])
+    return ", ".join(
+        f"{name}: {counts[name]}" for name in [*(f"<= {b:g}" for b in BINS), f"> {BINS[-1]:g}"] if counts[name]
+    )
 
 
 def main() -> None:

@@ -14,7 +14,6 @@ from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
-from heuncli.variants.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
 from heuncli.commands.find.request import FindRequest
 from heuncli.commands.find.results import CourseFindings, FindCondition
@@ -28,6 +27,7 @@ from heuncli.telling import measure
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
 from heuncli.variants.conditions import condition_of, in_si
+from heuncli.variants.course import Sample
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of
 

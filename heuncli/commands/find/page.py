@@ -7,7 +7,6 @@ import io
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from heuncli.variants.course import Sample
 from heuncli.commands.find.results import (
     CourseFindings,
     CourseJump,
@@ -29,6 +28,7 @@ from heuncli.report.plurals import count
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
 from heuncli.variants.axes import Interval
+from heuncli.variants.course import Sample
 from heuncli.version import VERSION
 
 WAYS = {1: "rises", -1: "falls", 0: "at the end"}

@@ -14,10 +14,19 @@ import math
 from collections.abc import Iterator
 from itertools import groupby
 
-from heuncli.variants.course import APART, MeasureCourse, Sample, slope
-from heuncli.commands.find.results import CourseJump, Crossing, EdgeKind, Met, MetEdge, OpenBracket, Touch, UnsolvedStretch
+from heuncli.commands.find.results import (
+    CourseJump,
+    Crossing,
+    EdgeKind,
+    Met,
+    MetEdge,
+    OpenBracket,
+    Touch,
+    UnsolvedStretch,
+)
 from heuncli.commands.find.touches import least_distances, touch_at
 from heuncli.named_tuples import NamedTuple
+from heuncli.variants.course import APART, MeasureCourse, Sample, slope
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
 SURE = 0.5  # of a slope: what it may be off by

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.variants.course import Sample
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.conditions import Sign
+from heuncli.variants.course import Sample
 
 EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]
 

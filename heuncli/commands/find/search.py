@@ -119,8 +119,10 @@ def place_of_peak(course: MeasureCourse, i: int) -> float | None:
         return None
     if np.isinf(peak.size) and (one.gap + course.value) * (other.gap + course.value) < 0.0:  # type: ignore[operator]
         return place_inside(one, other, peak.place)
-    largest = max((sample.gap or 0.0) + course.value for sample in (one, other)) if course.value > 0.0 else min(
-        (sample.gap or 0.0) + course.value for sample in (one, other)
+    largest = (
+        max((sample.gap or 0.0) + course.value for sample in (one, other))
+        if course.value > 0.0
+        else min((sample.gap or 0.0) + course.value for sample in (one, other))
     )
     if largest * course.value <= 0.0 or abs(largest) >= abs(course.value):
         return None

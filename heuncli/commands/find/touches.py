@@ -58,7 +58,9 @@ def follow(course: MeasureCourse, x: float) -> None:
         if found.gap is None or found.side != middle.side:
             return
         if size(found) > FALLS * size(middle) and found is not middle:
-            found = course.at(0.5 * (middle.x + (left.x if abs(left.x - middle.x) > abs(right.x - middle.x) else right.x)))
+            found = course.at(
+                0.5 * (middle.x + (left.x if abs(left.x - middle.x) > abs(right.x - middle.x) else right.x))
+            )
             if found.gap is None or found.side != middle.side:
                 return
         x = min((left, middle, right, found), key=size).x
@@ -66,9 +68,7 @@ def follow(course: MeasureCourse, x: float) -> None:
 
 def is_narrow(course: MeasureCourse, left: Sample, middle: Sample, right: Sample) -> bool:
     """Whether |g| may double within the least distance, by the chords."""
-    chord = max(
-        (size(left) - size(middle)) / (middle.x - left.x), (size(right) - size(middle)) / (right.x - middle.x)
-    )
+    chord = max((size(left) - size(middle)) / (middle.x - left.x), (size(right) - size(middle)) / (right.x - middle.x))
     return chord * course.finest >= size(middle)
 
 

@@ -152,9 +152,12 @@ def _searches(total: SpreadSum, size: float) -> Iterator[str]:
     """What was found within spreads that are not linear, and what cannot be solved of them."""
     for one in total.contributions:
         if one.bent and one.least is not None and one.greatest is not None:
-            linear = "there is no derivative" if one.linear is None else f"the derivative says ± {one.linear * size:.4g}"
+            linear = (
+                "there is no derivative" if one.linear is None else f"the derivative says ± {one.linear * size:.4g}"
+            )
             ends = " to ".join(
-                f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")" for x, change in (one.least, one.greatest)
+                f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
+                for x, change in (one.least, one.greatest)
             )
             yield f"{one.name} is not linear over its spread: {ends}, by {count(one.variants, 'variant')}; {linear}"
         if one.why[0]:

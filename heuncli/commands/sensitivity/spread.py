@@ -82,8 +82,10 @@ def extremes_of(ask: Ask, base: NoisyValue, spread: NumberSpread, slope: NoisyDe
     below, above = (changes.get(x, (None,))[0] for x in (-t, t))
     why = next((one.why for one in shown.values() if one.value is None), ("", ""))
     lead = name, t, spread.number.unit
-    if len(changes) == len(shown) and slope.value is not None and all(
-        agrees(slope, x, change) for x, change in changes.items()
+    if (
+        len(changes) == len(shown)
+        and slope.value is not None
+        and all(agrees(slope, x, change) for x, change in changes.items())
     ):
         size, error = max((abs(value), noise) for value, noise in changes.values())
         size, error = max((size, error), (linear or 0.0, slope.error * t))
@@ -95,7 +97,9 @@ def extremes_of(ask: Ask, base: NoisyValue, spread: NumberSpread, slope: NoisyDe
     low, high, left, runs = searched(ask, base, name, t)
     error = max(low.error, high.error) + base.error + left
     size = max(-(low.gap or 0.0), high.gap or 0.0)
-    made = Contribution(*lead, size, error, linear, below, above, True, (low.x, low.gap or 0.0), (high.x, high.gap or 0.0), runs, why)
+    made = Contribution(
+        *lead, size, error, linear, below, above, True, (low.x, low.gap or 0.0), (high.x, high.gap or 0.0), runs, why
+    )
     return SpreadExtremes(made, low.x, high.x)
 
 
