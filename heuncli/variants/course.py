@@ -151,7 +151,7 @@ class MeasureCourse:
         return one.gap is None or other.gap is None or (one.x, other.x) in self.jumps
 
     def peak(self, i: int) -> Peak | None:
-        """How far the magnitude of the measure may grow between a sample and the next; None: nothing tells of a peak."""
+        """How far the magnitude of the measure may grow between a sample and the next; None: no sign of a peak."""
         if self.parted(i):
             return None
         one, other = self.samples[i], self.samples[i + 1]
@@ -183,7 +183,7 @@ class MeasureCourse:
         return Peak(place, abs(m[1]) / math.sqrt(least) if least > 0.0 else math.inf)
 
     def _pole(self, i: int) -> float | None:
-        """Where 1/measure passes 0 between neighbours of different signs, if it does so as far as one side foretells."""
+        """Where 1/measure passes 0 between neighbours of different signs, if one side foretells that."""
         one, other = self.samples[i], self.samples[i + 1]
         width = other.x - one.x
         a, b = 1.0 / self._measure(i), 1.0 / self._measure(i + 1)

@@ -6,7 +6,7 @@
     T_i        Σ (f_A - f_i)² / (2 n V)         total: of it and of all that it does together with others (Jansen 1999)
 
 Each is a ratio of two means, R = ⟨m⟩/⟨v⟩, with the error s of the mean of (m - R v)/⟨v⟩. Products of measures have long
-tails, so that s of few samples is too small as a rule, and 1.96 s holds the truth in 75 of 100 samples. How far R is off
+tails, so that s of few samples is too small as a rule: 1.96 s holds the truth in 75 of 100 samples. How far R is off
 in units of its own s is found by drawing units of the sample again (the symmetric bootstrap-t of Hall 1988):
 
     |R* - R| / s*  ≤ q   in a share p of drawings     interval: R ± q s, q not below that of Student's t

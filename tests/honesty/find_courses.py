@@ -16,6 +16,7 @@ import math
 import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Callable
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -56,7 +57,7 @@ analysis: {{type: state}}
 class KnownCourse(NamedTuple):
     """A formula of x over an interval, and what is true of it.
 
-    value: what it is held against; f: the same in mpmath (None outside of its domain); roots: where it passes the value;
+    value: what it is held against; f: in mpmath (None outside of its domain); roots: where it passes the value;
     touches: where it comes to it from one side; breaks: where it jumps or has a pole; edges: where it ends; rounding:
     by how much x itself is not known at each root, where the formula magnifies roundings.
     """
@@ -183,7 +184,8 @@ def inverse_edge(rng: Rng) -> KnownCourse:
 def touch(rng: Rng) -> KnownCourse:
     """k |x - c|^p + v against v, or against a little less or more than v."""
     low, high = ends(rng)
-    c, k, p = place(rng, low, high), float(rng.choice([1.0, -1.0]) * 10.0 ** rng.uniform(-2.0, 2.0)), rng.choice([1.0, 1.5, 2.0, 2.0, 4.0])  # fmt: skip
+    c, k = place(rng, low, high), float(rng.choice([1.0, -1.0]) * 10.0 ** rng.uniform(-2.0, 2.0))
+    p = rng.choice([1.0, 1.5, 2.0, 2.0, 4.0])
     v = float(rng.choice([0.0, 0.0, rng.uniform(-5.0, 5.0)]))
     off = 0.0 if rng.random() < 0.6 else float(rng.choice([1.0, -1.0]) * 10.0 ** rng.uniform(-8.0, -0.5))
     value = v + k * off
@@ -252,7 +254,7 @@ def zero(rng: Rng) -> KnownCourse:
     low, high = -1.0, 1.0
     count = int(rng.integers(1, 4))
     found = sorted(float(x) for x in rng.uniform(-0.95, 0.95, count))
-    if min((b - a for a, b in zip(found, found[1:], strict=False)), default=1.0) < 0.02:
+    if min((b - a for a, b in pairwise(found)), default=1.0) < 0.02:
         return zero(rng)
     powers = [int(each) for each in rng.choice([1, 1, 1, 2, 3], count)]
     k = float(10.0 ** rng.uniform(-3.0, 3.0))

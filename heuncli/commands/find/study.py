@@ -37,12 +37,14 @@ def look(
     complete, refined = True, False
     try:
         course.scan()
-        looked_at = 0
+        looked_at, enclosed = 0, -1
         while len(course.samples) > looked_at:  # whatever was found is looked at like the scan
             looked_at = len(course.samples)
             course.withhold_isolated()
             search(course)
-            enclose(course)
+            if (met_at := sum(1 for _ in meetings(course))) != enclosed:  # where more is met than was enclosed before
+                enclose(course)
+                enclosed = met_at
             find_touches(course)
             if not any(meetings(course)) and extreme(course, 1) is not None:
                 refined = True

@@ -175,7 +175,8 @@ def _sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterato
     found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
     words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
     for word, (value, error), how in words:
-        yield f"{word}: ± {_with_unit(with_digits(value * size, error * size), unit)} (error {rough(error * size)}){how}"
+        text = _with_unit(with_digits(value * size, error * size), unit)
+        yield f"{word}: ± {text} (error {rough(error * size)}){how}"
     low, high = total.corners
     if base.value is None or low.value is None or high.value is None:
         why = next((end.why for end in total.corners if end.value is None), ("", ""))
