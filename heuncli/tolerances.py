@@ -128,6 +128,9 @@ CONTACT_TOUCHES = 1e-12  # of the size, and of places and limits: START_ROUNDING
 # touches at an instant touches in a run from a moved start, too
 CONTACT_RATE = 1e-12  # of the terms of a rate of opening: thousands of roundings, which settling and a blow leave
 CONTACT_ACCELERATION = 1e-11  # the same of accelerations, which loads and factors leave a digit more of
+CONTACT_TOGETHER = 1e-8  # of a gap: contacts of a sequence that close within it close together; ten times the default
+# tolerance of a motion, so that a start moved by its error finds the same ones
+CONTACT_BASIS = 1e-3  # of a contact's own answer: what those before it must leave of it, to be solved for by its rate
 CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if less; squares, so 1e-6 of a lever
 NO_ANSWER = 1e-13  # of what free bodies would answer: what all other joints hold already, to hundreds of roundings
 SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instants are told apart by (least_step)
@@ -187,6 +190,7 @@ START_ROUNDING = 8.0 * EPS  # of a state's numbers: typed digits, assembling, an
 ROUNDING_MATTERS = 5e-10  # local tolerance: errors are some 1e-3 of it, and then no more than 300 START_ROUNDING
 SUM_ROUNDING = 16.0 * EPS  # of the largest term: sums of some dozen terms, and what their own roundings add up to
 UNKNOWN = 1e6  # an error relative to what it is an error of, where that is without bound or not a number
+FRICTION_LACKS = 1e-6  # of its value: smoothed friction that lacks less is full to the six digits of a table
 WRITTEN = 1e-12  # of the largest: digits of what was solved exactly, all that some thousand roundings leave
 LEAST_RATE = 1e-5  # of a radian, or of the size, in the time asked for: slower ones are judged as if that fast
 BOUNDLESS = 1e3  # a value that grows so many times over within 2**-20 of the run is on its way to infinity; where steps

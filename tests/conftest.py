@@ -11,10 +11,12 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.cli import alarm
 from heuncli.cli.entry import enter
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
+from tests.shared.processes import hand_down_signals
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 # And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
@@ -57,7 +59,11 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 
 
 def pytest_configure() -> None:
-    """Warnings are errors in processes that tests start, too."""
+    """Processes that tests start take signals as on a terminal, and warnings are errors in them, too."""
+    hand_down_signals()
+    alarm.HARD_END = (
+        600.0  # s: however slow the machine, a time limit of a command does not end the process of the tests
+    )
     os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")  # NumPy's; of these users would see the paths
 
 

@@ -23,12 +23,15 @@ from heuncli.client_report.parts import ReportCell, ReportTable, some
 from heuncli.client_report.reported import Reported, ReportedRun
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.digits import OPEN, OPEN_NOTE, UNKNOWN, UNKNOWN_NOTE, ZERO_NOTE, Style, rough
-from heuncli.report.extremes_tables import MANY, NOT_SEARCHED, PARTLY_OPEN_NOTE
+from heuncli.report.extremes_tables import MANY, MARK, NOT_SEARCHED, PARTLY_OPEN_NOTE
 from heuncli.report.text_table import TextColumn
 from heuncli.telling.envelopes import Bound
 
 MOST_CASES = 12  # told in a line each; of more those that govern
-GOVERNS = "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open"
+GOVERNS = (
+    "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open, "
+    "that is rounding, or in which all cases are alike"
+)
 PARTLY = "*"
 STEADY = "without an instant: the same at all {}, to the digits shown"
 ERRORS = "±: the error that the run states of the number, rounding included"
@@ -65,7 +68,7 @@ def _shown(of: Reported, groups: Sequence[LoadGroup], governs: Governing) -> set
     if len(of.runs) <= MOST_CASES:
         return {run.name for run in of.runs}
     bounds = [found(row.path) for group in groups for row in group.rows for found in (governs.low, governs.high)]
-    return {bound.case for bound in bounds if bound is not None}
+    return {case for bound in bounds if bound is not None for case in bound.governing} or {of.runs[0].name}
 
 
 def _hidden(of: Reported, groups: Sequence[LoadGroup], shown: set[str]) -> list[str]:
@@ -163,10 +166,20 @@ def _of_cases(
         case = [run.told] if of.has_cases else []
         texts = one.texts[run.name]
         error = "" if texts == (OPEN, OPEN) else rough(ends.error * one.size)
-        cells = _cells(of, run, ends, texts, bold, along=along)
+        cells = _cells(of, run, ends, _marked(run, one, ends, texts), bold, along=along)
         label = lead[0] + PARTLY * ends.parts_open
         yield (ReportCell(label), ReportCell(lead[1]), *map(ReportCell, case), *cells, ReportCell(error))
         lead = ["", ""]
+
+
+def _marked(run: ReportedRun, one: WrittenRow, ends: Ends, texts: tuple[str, str]) -> tuple[str, str]:
+    """The texts with a mark where smoothed friction is not at its value at their instants."""
+    if texts[0] == texts[1]:
+        return texts
+    kind = one.row.path.split(".")[0]
+    both = zip(texts, (ends.low, ends.high), strict=True)
+    low, high = (text if end.at is None else run.doubted.mark(text, end.at, kind, ends.unit) for text, end in both)
+    return low, high
 
 
 def _texts(ends: Ends, how: Style, size: float) -> tuple[str, str]:
@@ -174,7 +187,7 @@ def _texts(ends: Ends, how: Style, size: float) -> tuple[str, str]:
 
 
 def _is(bound: Bound | None, run: ReportedRun) -> bool:
-    return bound is not None and bound.case == run.name
+    return bound is not None and not bound.is_rounding and run.name in bound.governing
 
 
 def _cells(
@@ -210,3 +223,5 @@ def _notes(of: Reported, rows: Sequence[Sequence[ReportCell] | str]) -> Iterator
         yield UNKNOWN_NOTE
     if any(cell.text.endswith(PARTLY) for cell in cells):
         yield PARTLY_OPEN_NOTE
+    if any(cell.text.endswith(MARK) for cell in cells):
+        yield from dict.fromkeys(run.doubted.note for run in of.runs if run.doubted.note)

@@ -7,12 +7,15 @@ from functools import cached_property
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
+from heuncli.report.extremes_tables import NO_DOUBT, DoubtedInstants
 from heuncli.report.labels import Labels
 from heuncli.report.page import Page
 from heuncli.report.table_units import Units
 from heuncli.results import Results
 from heuncli.spec.models import Spec
+from heuncli.study.ask.smoothed_friction import partial_friction
 from heuncli.study.ask.study import Study
+from heuncli.study.compose.smoothed_friction import note_of_partial
 from heuncli.telling.envelopes import Enveloped, envelope
 from heuncli.telling.kept import KeptRun
 from heuncli.telling.outcomes import Outcome
@@ -39,6 +42,13 @@ class ReportedRun:
     def results(self) -> Results:
         """What was solved."""
         return self.study.results
+
+    @cached_property
+    def doubted(self) -> DoubtedInstants:
+        """The instants of extremes at which smoothed friction is not at its value."""
+        times = [t for number in self.kept.numbers.values() for t in (number.least_at, number.greatest_at)]
+        found = partial_friction(self.study, [t for t in times if t is not None])
+        return DoubtedInstants.of(found, note_of_partial(found)) if found else NO_DOUBT
 
     @property
     def told(self) -> str:

@@ -42,6 +42,8 @@ from heuncli.report.digits import rough
 from heuncli.report.table_units import Units
 from heuncli.results import Array
 from heuncli.study.ask.measure import Peak
+from heuncli.study.ask.smoothed_friction import friction_warning
+from heuncli.study.compose.smoothed_friction import has_smoothed_friction
 from heuncli.variants.stated import unit_of
 
 DIGITS = 5  # of the words at an extreme, where the run can stand behind so many
@@ -289,4 +291,15 @@ def _notes(drawn: Sequence[PanelCourse], panels: Sequence[Panel]) -> list[str]:
     notes += [f"open or not known at some instants, and not drawn there: {', '.join(in_parts)}"] if in_parts else []
     if any(isinstance(item, Band) for panel in panels for item in panel.items):
         notes.append("light bands: the stated error")
-    return notes
+    return [*notes, *_near_rest(drawn)]
+
+
+def _near_rest(drawn: Sequence[PanelCourse]) -> Iterator[str]:
+    """Which extremes stand where smoothed friction is not at its value."""
+    for each in drawn:
+        study, course = each.source.study, each.course
+        if not has_smoothed_friction(study.setup.scene.mechanism) or course.low.value == course.high.value:
+            continue
+        for word, peak in (("least", course.low), ("greatest", course.high)):
+            if math.isfinite(peak.value) and (text := friction_warning(study, course.path, peak.at)) is not None:
+                yield f"the {word} of {text}"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -29,6 +29,30 @@ NOT_SEARCHED = "extremes among the samples only: too many quantities to search b
 NOTES = (ZERO_NOTE, OPEN_NOTE, PARTLY_OPEN_NOTE, UNKNOWN_NOTE)
 
 
+OF_AN_INSTANT = frozenset({"foundation", "joints", "stops", "couplings", "sections"})  # kinds that hang on friction
+
+
+class DoubtedInstants(NamedTuple):
+    """Instants at which loads and accelerations are not those of the machine, and the note that says why."""
+
+    instants: frozenset[float] = frozenset()
+    note: str = ""
+
+    @classmethod
+    def of(cls, instants: Iterable[float], why: str) -> DoubtedInstants:
+        """Those instants, with what the mark means."""
+        return cls(frozenset(instants), f"{MARK} {why}")
+
+    def mark(self, text: str, at: float, kind: str, unit: str) -> str:
+        """The text of a number with a mark, where its instant is one of these and it hangs on it."""
+        hangs = kind in OF_AN_INSTANT or unit.endswith("/s²")
+        return text + MARK if at in self.instants and hangs and text not in ("0", OPEN, UNKNOWN) else text
+
+
+NO_DOUBT = DoubtedInstants()
+MARK = "†"
+
+
 class GroupExtremes(NamedTuple):
     """A group with the extremes of its rows, and where the run ends beyond its horizon their last values."""
 
@@ -49,11 +73,13 @@ def abridged(block: TableBlock) -> TableBlock:
 
 
 def extremes_table(
-    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None
-) -> list[TextTable]:
+    block: TableBlock, times: Array, extremes: Extremes, certain: Certainty, beyond: Array | None = None,
+    doubted: DoubtedInstants = NO_DOUBT,
+) -> list[TextTable]:  # fmt: skip
     """First and last value, lowest and highest with their instants; one line a group where there are many.
 
-    beyond: the last value of each row, where the run ends beyond its horizon.
+    beyond: the last value of each row, where the run ends beyond its horizon; doubted: instants whose extremes are
+    marked.
     """
     counts = np.cumsum([0, *(len(group.rows) for group in block.groups)])
     own = [slice(a, b) for a, b in pairwise(counts)]
@@ -62,30 +88,36 @@ def extremes_table(
         GroupExtremes(group, extremes.part(rows), x) for group, rows, x in zip(block.groups, own, last, strict=True)
     ]
     if len(parts) <= MANY:
-        return [_full(block, parts, times, certain)]
+        return [_full(block, parts, times, certain, doubted)]
     whole = [part for part in parts if part.group.whole]
-    tables = [_full(block, whole, times, certain)] if whole else []
+    tables = [_full(block, whole, times, certain, doubted)] if whole else []
     single = [part for part in parts if not part.group.whole]
-    return [*tables, _one_line_each(block, single, times, certain, heading="" if whole else block.heading)]
+    heading = "" if whole else block.heading
+    return [*tables, _one_line_each(block, single, times, certain, heading, doubted)]
 
 
-def _full(block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty) -> TextTable:
+def _full(
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, doubted: DoubtedInstants
+) -> TextTable:
     """A line a row, under a title a group."""
     rows: list[tuple[str, ...] | str] = []
     notes: set[str] = set()
     span = float(np.ptp(times))
     for part in parts:
-        lines, needed = _lines(part, span, certain)
+        lines, needed = _lines(part, span, certain, block.kind, doubted)
         rows += [part.group.title, *lines] if part.group.name else lines
         notes |= needed
     heads = ("first", "last", "min", "at [s]", "max", "at [s]")
     columns = (TextColumn("", "left"), TextColumn("", "left"), *(TextColumn(head) for head in heads))
     if all(isinstance(row, str) for row in rows):
         columns = (TextColumn("", "left"),)  # a title and what is open of each: no numbers to head
-    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *(note for note in NOTES if note in notes)))
+    below = [note for note in (*NOTES, doubted.note) if note in notes]
+    return TextTable(block.heading, columns, tuple(rows), (*block.notes, *below))
 
 
-def _lines(part: GroupExtremes, span: float, certain: Certainty) -> tuple[list[tuple[str, ...] | str], set[str]]:
+def _lines(
+    part: GroupExtremes, span: float, certain: Certainty, kind: str, doubted: DoubtedInstants
+) -> tuple[list[tuple[str, ...] | str], set[str]]:
     """The lines of a group, and the notes they need: rows that are 0 or open throughout take no line."""
     group, extremes = part.group, part.extremes
     instants = np.stack([extremes.low_at, extremes.high_at])
@@ -107,6 +139,10 @@ def _lines(part: GroupExtremes, span: float, certain: Certainty) -> tuple[list[t
         notes |= {UNKNOWN_NOTE} if UNKNOWN in (first, last, low, high) else set()
         low_at, high_at = ["", ""] if low == high else write_times(instants[:, i].tolist(), span)
         unit = row.unit if row.unit != "1" else ""
+        ends = low, high
+        if low != high:  # else it is the same throughout
+            low, high = (doubted.mark(end, float(at), kind, unit) for end, at in zip(ends, instants[:, i], strict=True))
+        notes |= {doubted.note} if (low, high) != ends else set()
         lines.append((row.label + "*" * partly, unit, first, last, low, low_at, high, high_at))
     if is_open:
         notes.add(OPEN_NOTE)
@@ -126,8 +162,9 @@ def _texts(part: GroupExtremes, certain: Certainty) -> list[list[str]]:
 
 
 def _one_line_each(
-    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, heading: str
-) -> TextTable:
+    block: TableBlock, parts: Sequence[GroupExtremes], times: Array, certain: Certainty, heading: str,
+    doubted: DoubtedInstants,
+) -> TextTable:  # fmt: skip
     """A line a group: of each row but the components of vectors the value farthest from zero, and when."""
     span = float(np.ptp(times))
     heads: dict[str, None] = {}
@@ -137,7 +174,12 @@ def _one_line_each(
         farthest = np.where(lower, extremes.low, extremes.high)
         styles = family_styles(group.rows, farthest[None, :], certain)
         texts = [how.write(value) for how, value in zip(styles, farthest, strict=True)]
-        clock = write_times(np.where(lower, extremes.low_at, extremes.high_at).tolist(), span)
+        instants = np.where(lower, extremes.low_at, extremes.high_at).tolist()
+        clock = write_times(instants, span)
+        texts = [
+            doubted.mark(text, at, block.kind, row.unit)
+            for text, at, row in zip(texts, instants, group.rows, strict=True)
+        ]
         own = {
             f"{row.label} [{row.unit}]": (text, "" if text in ("0", OPEN, UNKNOWN) else at)
             for row, text, at in zip(group.rows, texts, clock, strict=True)
@@ -155,4 +197,5 @@ def _one_line_each(
     notes = (*block.notes, f"{what}; components: --at, or --format csv")
     shown = {text for row in rows for text in row}
     notes += tuple(note for word, note in ((OPEN, OPEN_NOTE), (UNKNOWN, UNKNOWN_NOTE)) if word in shown)
+    notes += (doubted.note,) if any(text.endswith(MARK) for text in shown) else ()
     return TextTable(heading, tuple(columns), rows, notes)

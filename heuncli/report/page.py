@@ -16,7 +16,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.report import cut_runs
 from heuncli.report.certain_sums import sums_table
 from heuncli.report.digits import Certainty, certainty, with_axis
-from heuncli.report.extremes_tables import abridged, extremes_table
+from heuncli.report.extremes_tables import NO_DOUBT, DoubtedInstants, abridged, extremes_table
 from heuncli.report.instants_tables import instants_tables
 from heuncli.report.labels import Labels
 from heuncli.report.run_searches import NONE, RunExtremes, with_stresses
@@ -50,7 +50,7 @@ class Page(NamedTuple):
 
     of: what its numbers are summed from; beyond: the last instant alone, where the run ends beyond its horizon; struck:
     of each blow the extremes along its runs of cuts; along_runs: of the whole run, what else was searched of them;
-    details: whether tables are shown that only those want who ask for them.
+    details: whether tables are shown that only those want who ask for them; doubted: instants of marked extremes.
     """
 
     results: Results
@@ -61,6 +61,7 @@ class Page(NamedTuple):
     struck: Sequence[Mapping[str, Extremes]] = ()
     along_runs: Mapping[str, RunExtremes] = NONE
     details: bool = True
+    doubted: DoubtedInstants = NO_DOUBT
 
     def columns(self, results: Results) -> Array:
         """What is searched, (n_t, n): all rows of all blocks, magnitudes squared."""
@@ -104,7 +105,7 @@ class Page(NamedTuple):
             own = slice(start, start + len(rows))
             part = self._roots(block, searched.part(own))
             beyond = last[own] if last is not None else None
-            tables += extremes_table(block, times, part, self.certain, beyond)
+            tables += extremes_table(block, times, part, self.certain, beyond, self.doubted)
             start += len(rows)
         for k, run in enumerate(cut_runs.runs_of(self.results, self.labels)):
             of = self.along_runs.get(run.name, RunExtremes())

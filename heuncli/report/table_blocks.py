@@ -136,7 +136,8 @@ def build(plan: TablePlan, results: Results, labels: Labels, series: Iterable[Se
         if plan.of_foundation and item.name == MASS_EFFECT.only:
             continue
         if item.name.split(".")[0] not in runs:
-            named.setdefault(item.name.removesuffix(".stress"), {})[item.quantity] = item
+            name = item.name.removesuffix(".stress") if plan.kind == "sections" else item.name
+            named.setdefault(name, {})[item.quantity] = item
     groups = []
     for name, own in named.items():
         rows = [row for quantity in plan.quantities if quantity in own for row in rows_of(own[quantity])]

@@ -21,7 +21,9 @@ from heuncli.spec.models import Spec
 from heuncli.spec.names import names_in
 from heuncli.spec.rules.outcome import wrong_path
 from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, NotOneNumber, Peak, lost_from, value
+from heuncli.study.ask.smoothed_friction import friction_warning
 from heuncli.study.ask.study import Study
+from heuncli.study.compose.smoothed_friction import has_smoothed_friction
 from heuncli.telling.asked_values import all_or_errors
 
 T = TypeVar("T")
@@ -137,7 +139,9 @@ def block(asked: MeasureRequest, study: Study) -> dict[str, Any]:
 
 def described(asked: MeasureRequest, study: Study, peak: Peak, horizon: float | None) -> dict[str, Any]:
     """A number as it was `measured`, for JSON: with its instant, and along a run of cuts its place."""
-    found = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
+    found: dict[str, Any] = {"measure": f"{asked.how} {asked.path}".strip(), "value": peak.value, "at": peak.at}
+    if horizon is None and (note := friction_warning(study, asked.path, peak.at)) is not None:
+        found["notes"] = [note]
     if "axes" in study.results.model and "joints." in asked.path:
         found["axes"] = study.results.model["axes"]
     if horizon is not None:
@@ -169,9 +173,14 @@ def measured(asked: MeasureRequest, study: Study, asked_by: str = "--measure") -
 
 
 def warnings(several: Sequence[MeasureRequest], study: Study) -> list[str]:
-    """Why there is `?` in place of some numbers."""
+    """Why there is `?` in place of some numbers, and which stand where friction is not at its value."""
     lost = [(asked.path, lost_from(asked, study)) for asked in several]
-    return [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
+    told = [f"{path} is not known: {NOT_CLAIMED.format(horizon)}" for path, horizon in lost if horizon is not None]
+    if has_smoothed_friction(study.setup.scene.mechanism):
+        known = [asked for asked, (_, horizon) in zip(several, lost, strict=True) if horizon is None]
+        found = (friction_warning(study, asked.path, value(asked, study).at) for asked in known)
+        told += [text for text in found if text is not None]
+    return told
 
 
 def _is_number(word: str) -> bool:

@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.cut_runs import LOADS
-from heuncli.report.extremes_tables import NOT_SEARCHED
+from heuncli.report.extremes_tables import MARK, NOT_SEARCHED, DoubtedInstants
 from heuncli.report.labels import Labels
 from heuncli.report.page import page_of
 from heuncli.report.text_table import TextTable
 from heuncli.results import Array
 from heuncli.results_schema import SHARES
+from heuncli.study.ask.smoothed_friction import partial_friction
 from heuncli.study.ask.study import Study
+from heuncli.study.compose.smoothed_friction import has_smoothed_friction, note_of_partial
 from heuncli.study.model.selection import EntryKeys, Selection
 from heuncli.telling import searches
 
 AXIS: EntryKeys = ("foundation", "axis")
+OF_SOME = ", of some of the extremes along runs of cuts"
 AT_INSTANTS = "a line in space has no extremes: the central axis is shown at instants, by --at or --all"
 
 
@@ -42,6 +45,9 @@ def tables_of(study: Study, labels: Labels, asked: TablesAsked) -> list[TextTabl
         extremes = searches.rows(page, study, wanted)
         if page.has_runs:
             page = page._replace(along_runs=searches.along_runs(page, study))
+        if has_smoothed_friction(study.setup.scene.mechanism):
+            found = partial_friction(study, [*extremes.low_at.tolist(), *extremes.high_at.tolist()])
+            page = page._replace(doubted=DoubtedInstants.of(found, note_of_partial(found)))
     shares = study if SHARES in wanted else None
     if extremes is None or one:
         shown = study.results if asked.at is None else study.resample(asked.at)
@@ -50,6 +56,8 @@ def tables_of(study: Study, labels: Labels, asked: TablesAsked) -> list[TextTabl
         tables = page.extremes(extremes, shares)
         if not extremes.searched:
             tables.insert(0, TextTable("", notes=(NOT_SEARCHED,)))
+        if page.has_runs and page.doubted.instants:
+            tables.append(TextTable("", notes=(page.doubted.note.removeprefix(f"{MARK} ") + OF_SOME,)))
         if AXIS in asked.what.entries:
             tables.append(TextTable("", notes=(AT_INSTANTS,)))
     if not tables:

@@ -163,6 +163,68 @@ def follows_the_whole(spec: Spec, bodies: set[str]) -> None:
     assert np.abs(part - whole).max() < SMALL * np.abs(whole).max()
 
 
+LAWS = """
+heun: 1
+gravity: [0, 0, -9.81]
+ground: {points: {O: [0, 0, 0], P: [0.3, 0.5, 0], R: [3, 0, 2]}}
+tables:
+  soft: {x: [-1, 0, 1], y: [-300, 0, 500], outside: hold}
+  curve: {x: [-10, 0, 10], y: [4, 3, 1], outside: hold}
+bodies:
+  a: {mass: 2, center: [0.2, 0, 0], inertia: [0.1, 0.1, 0.1], points: {o: [0, 0, 0], e: [1, 0, 0]}}
+  b: {mass: 1, center: [0, 2, 0], inertia: [0.1, 0.1, 0.1], points: {o: [0, 2, 0]}}
+  c: {mass: 1, center: [0, 4, 0], inertia: [0.1, 0.1, 0.1], points: {o: [0, 4, 0]}}
+  d: {mass: 3, center: [3, 0, 0], inertia: [0.1, 0.1, 0.1], points: {o: [3, 0, 0]}}
+  e: {mass: 1, center: [5, 0, 0], inertia: [0.1, 0.1, 0.1], points: {o: [5, 0, 0]}}
+joints:
+  A: {type: pin, from: ground.O, to: a.o, axis: [0, 0, 1], initial: {angle: 0.2, rate: 0.3}}
+  B: {type: slide, from: {body: ground, at: [0, 2, 0]}, to: b.o, axis: [1, 0, 0], initial: {travel: 0.1, speed: 0.2}}
+  C: {type: pin, from: {body: ground, at: [0, 4, 0]}, to: c.o, axis: [0, 0, 1], initial: {angle: 0, rate: 1}}
+  D: {type: slide, from: {body: ground, at: [3, 0, 0]}, to: d.o, axis: [0, 0, 1]}
+  E: {type: slide, from: {body: ground, at: [5, 0, 0]}, to: e.o, axis: [1, 0, 0], initial: {travel: 0, speed: 1}}
+drives:
+  lift: {joint: D, travel: 0.1*t**2}
+forces:
+  own: {type: spring, from: ground.P, to: a.e, force: "-200*(length - 0.4)**3 - 4*rate + 3*t*abs(length - 0.55)"}
+  own2: {type: turn_spring, joint: A, torque: "-3*angle - 0.1*rate"}
+  rub: {type: damper, joint: B, force: "-2*rate*abs(rate)"}
+  follow: {type: force, on: b.o, vector: ["3*A.angle + points.a.e.vx", 0, 0]}
+  mount: {type: bushing, from: {body: ground, at: [0, 4, 0]}, to: c.o, turning: soft}
+  motor: {type: motor, joint: C, curve: curve, ratio: 2}
+  pull: {type: actuator, from: ground.R, to: e.o, value: "table(soft, B.travel)"}
+latches:
+  hold: {joint: E, travel: 0.05, when: "A.angle > 0.1"}
+impulses:
+  blow: {on: b.o, vector: [0.1, 0, 0], when: "C.angle > 0.05"}
+analysis: {duration: 0.07, samples: 3, events: {turned: "C.angle > 0.1"}}
+"""
+LAW_PATHS = (
+    "joints.A.force", "joints.B.force", "coordinates.C.acceleration", "coordinates.E.travel", "points.a.e.velocity",
+    "forces.own.length", "forces.rub.power", "forces.mount.turn", "forces.motor.value", "forces.pull.value",
+    "foundation.elements.lift.force", "stops.hold.force",
+)  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def whole_by_laws() -> Results:
+    """All of the scene."""
+    return solve(load("scene.yaml", LAWS), Options(reduce=False)).results
+
+
+@pytest.mark.parametrize("path", LAW_PATHS)
+def test_loads_by_laws_follow_the_whole(path: str, whole_by_laws: Results) -> None:
+    """Laws of a load's own line, joint or shift, of a table, of another part's coordinate or point."""
+    part = asked(load("scene.yaml", LAWS), [path]).results
+    a, b = numbers(part, path), find(whole_by_laws, path).values
+    assert a.shape == b.shape and np.abs(a - b).max() <= 10.0 * SMALL * max(float(np.abs(b).max()), 1.0)
+
+
+@pytest.mark.parametrize("words", [["--only", "joints.A"], ["--only", "forces"], ["--measure", "max forces.own.value"]])
+def test_words_that_name_a_spring_by_its_own_law(heun: Heun, folder: Path, words: list[str]) -> None:
+    (folder / "laws.yaml").write_text(LAWS)
+    assert heun("run", "laws.yaml", *words).returncode == 0
+
+
 def test_a_moment_about_another_body_needs_it() -> None:
     text = "  far: {body: b0, at: [0, 0, -0.2], normal: [0, 0, -1], reduce_to: b2.end}\n"
     spec = pendulums(4, text)

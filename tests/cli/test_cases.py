@@ -125,3 +125,17 @@ def test_without_a_case_a_scene_is_as_it_stands(scene: Path) -> None:
     spec = load(str(scene / "cases.yaml"))
     assert (spec.case, dict(spec.cases)) == (None, {"heavy": "with its load", "tilted": ""})
     assert [item.of for item in spec.expect] == ["foundation.force.x"]
+
+
+def test_no_case_governs_rounding_or_what_is_alike(heun: Heun, folder: Path) -> None:
+    """The weight on a slanting pin: its moments are rounding; the sideways force is that of one case, or alike."""
+    cases = "cases:\n  one: {set: {m: 1 kg}}\n  same: {set: {m: 1.0 kg}}\n  heavy: {set: {m: 3 kg}}\n"
+    (folder / "cases.yaml").write_text(HANGING.replace("type: ball", "type: weld") + STATE + cases)
+    envelope = json.loads(heun("run", "cases.yaml", "--case", "all", "--format", "json").stdout)["envelope"]
+    low, high = (envelope["joints.pivot.force.z"][word] for word in ("min", "max"))
+    assert (high["case"], "alike" in high) == ("heavy", False)
+    assert {low["case"], *low["alike"]} == {"one", "same"}
+    assert envelope["joints.pivot.force.x"]["max"]["case"] is None
+    table = heun("run", "cases.yaml", "--case", "all").stdout.partition("ENVELOPE")[2]
+    assert "joints.pivot.force.x" not in table
+    assert "one, same" in table

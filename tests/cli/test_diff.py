@@ -76,3 +76,23 @@ def test_what_is_neither_is_told_by_its_path(heun: Heun, folder: Path, text: str
 def test_forms_for_a_pull_request(heun: Heun, pair: tuple[str, str]) -> None:
     assert heun("diff", *pair, "--format", "markdown").stdout.startswith("### heun diff: ")
     assert heun("diff", *pair, "--format", "github").stdout.startswith("::warning file=heavier.yaml,title=heun%3A ")
+
+
+def test_results_at_other_instants_are_compared_where_both_are(heun: Heun, folder: Path) -> None:
+    """Samples at other instants have other extremes of the same motion; at the common ones nothing differs."""
+    for name, samples in (("few", 5), ("many", 9), ("other", 4)):
+        heun("run", "swinging.yaml", "--set", f"analysis.samples={samples}", "--format", "json", "-o", f"{name}.json")
+    done = heun("diff", "few.json", "many.json")
+    assert "of 5 and 9 instants 5 are the same, and only these are compared" in done.stdout
+    assert "nothing changed" in done.stdout
+    assert "of 4 and 9 instants 2 are the same" in heun("diff", "other.json", "many.json").stdout
+    heun(
+        "run", "swinging.yaml", "--set", "m=1.1", "--set", "analysis.samples=9", "--format", "json", "-o", "heavy.json"
+    )
+    changed = json.loads(heun("diff", "few.json", "heavy.json", "--format", "json").stdout)["changes"]
+    assert any(row["of"] == "joints.pivot.force.z" for row in changed)
+    result = json.loads((folder / "few.json").read_text())
+    result["time"] = [t + 10.0 for t in result["time"]]
+    (folder / "later.json").write_text(json.dumps(result))
+    refused = heun("diff", "later.json", "many.json")
+    assert (refused.returncode, "no instant in common" in refused.stderr) == (2, True)

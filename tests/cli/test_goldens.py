@@ -45,6 +45,14 @@ def moved(number: KeptNumber, share: float) -> dict[str, KeptNumber]:
         if isinstance(value, float):
             shift = share * 2.0 * number.error + (2.0**-50 * abs(value) if share > 1.0 else 0.0)
             others[word] = number.model_copy(update={word: value + shift})
+    for i, value in enumerate(number.tenths):
+        if isinstance(value, float):
+            shift = share * 2.0 * number.error + (2.0**-46 * abs(value) if share > 1.0 else 0.0)
+            tenths = [*number.tenths[:i], value + shift, *number.tenths[i + 1 :]]
+            others[f"tenth {i}"] = number.model_copy(update={"tenths": tenths})
+    for word in ("mean", "moment"):
+        if (value := getattr(number, word)) is not None and number.mean_error is not None:
+            others[word] = number.model_copy(update={word: value + share * 2.0 * (number.error + number.mean_error)})
     for i, value in enumerate(number.even[:-1]):
         if isinstance(value, float):
             even = [*number.even[:i], value + share * 2.0 * number.error, *number.even[i + 1 :]]
@@ -167,7 +175,7 @@ def cut_off(text: str) -> str:
 
 
 def of_another_format(text: str) -> str:
-    return text.replace('"format": 1', '"format": 2')
+    return text.replace('"format": 2', '"format": 3')
 
 
 def of_another_spec(text: str) -> str:
@@ -179,7 +187,7 @@ def of_another_spec(text: str) -> str:
     ("spoilt", "told"),
     [
         (lambda text: "hello", "this is not JSON"), (cut_off, "ends before it is complete"),
-        (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1"),
+        (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1 and 2"),
         (of_another_spec, "kept of another spec: other.yaml"),
         (lambda text: text.replace('"status"', '"stat"'), "base.sta"),
     ],
@@ -228,6 +236,48 @@ def test_a_full_disk_leaves_what_was_there(heun: Heun, folder: Path, monkeypatch
     assert (done.returncode, "[output-failed]" in done.stderr) == (5, True)
     assert file.read_bytes() == before
     assert [path.name for path in (folder / "g").iterdir()] == ["hanging.json"]
+    assert heun("check", "swinging.yaml", "--golden", "new/deep", "--update", "--force").returncode == 5
+    assert not (folder / "new").exists()
+
+
+def without_courses(text: str) -> str:
+    """A golden file as format 1 has it: ends, extremes and even instants alone."""
+    data = json.loads(text)
+    data["format"] = 1
+    later = ("tenths", "mean_square", "mean", "moment", "mean_error", "least_at_error", "greatest_at_error")
+    for number in data["base"]["numbers"].values():
+        for word in later:
+            number.pop(word, None)
+    return json.dumps(data, indent=1, sort_keys=True)
+
+
+def test_a_file_of_format_1_is_read_passes_and_is_renewed(heun: Heun, folder: Path) -> None:
+    heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
+    file = folder / "g" / "swinging.json"
+    whole = file.read_text()
+    file.write_text(without_courses(whole))
+    done = heun("check", "swinging.yaml", "--golden", "g")
+    assert done.returncode == 0
+    assert "kept by an earlier version without means" in done.stderr
+    assert "--update renews it" in heun("diff", "swinging.yaml", "g/swinging.json").stdout
+    assert heun("check", "swinging.yaml", "--golden", "g", "--update", "--force").returncode == 0
+    assert file.read_text() == whole
+
+
+def test_a_spec_that_changed_without_a_number_is_said_and_renewed(heun: Heun, folder: Path) -> None:
+    heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
+    spec, file = folder / "swinging.yaml", folder / "g" / "swinging.json"
+    numbers = json.loads(file.read_text())["base"]
+    spec.write_text(spec.read_text() + "# another line\n")
+    done = heun("check", "swinging.yaml", "--golden", "g")
+    assert (done.returncode, "the spec changed since it was kept, and no number left its bounds" in done.stderr) == (
+        0,
+        True,
+    )
+    assert "the specs are not the same text" in heun("diff", "swinging.yaml", "g/swinging.json").stdout
+    heun("check", "swinging.yaml", "--golden", "g", "--update", "--force")
+    assert json.loads(file.read_text())["base"] == numbers
+    assert heun("check", "swinging.yaml", "--golden", "g").stderr == ""
 
 
 @pytest.mark.heavy  # the compiled one keeps

@@ -227,5 +227,5 @@ def test_a_reader_of_a_pipe_that_goes_away(tmp_path: Path) -> None:
 )
 def test_a_folder_that_is_gone_is_5(words: str, folder: Path, heun: Heun) -> None:
     gone(folder)
-    done = heun(*words.format(folder / "hanging.yaml").split())
+    done = heun(*(word.format(folder / "hanging.yaml") for word in words.split()))
     assert (done.returncode, done.stdout) == (5, "") and "No such file or directory" in done.stderr

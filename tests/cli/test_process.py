@@ -5,11 +5,11 @@ from __future__ import annotations
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
 
+from tests.shared.processes import wait_until_solving
 from tests.shared.shell import ENVIRONMENT, shell
 
 
@@ -82,10 +82,8 @@ def test_unbuffered_output_is_whole_or_said_not_to_be(form: str, folder: Path) -
 @pytest.mark.heavy
 def test_an_interrupt_is_130(folder: Path) -> None:
     command = [sys.executable, "-m", "heuncli", "run", "long.yaml"]
-    heard = signal.signal(signal.SIGINT, signal.default_int_handler)  # one that is ignored is ignored by children too
     with subprocess.Popen(command, cwd=folder, stdout=-1, stderr=-1, text=True, env=ENVIRONMENT) as process:
-        signal.signal(signal.SIGINT, heard)
-        time.sleep(2.0)
+        wait_until_solving(process.pid)
         process.send_signal(signal.SIGINT)
         out, err = process.communicate(timeout=60)
     assert (process.returncode, out, err) == (130, "", "heun: interrupted\n")

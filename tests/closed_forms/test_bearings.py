@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,16 @@ def test_what_is_open_presses_nobody_knows_how(heun: Heun, folder: Path) -> None
     assert joint["pressure"] == [None] * len(found["time"])
     assert "pressure" in joint["open"]
     assert "pressure" in heun("run", "door.yaml").stdout
+
+
+def test_thrust_that_is_open_leaves_the_pressure_of_a_pin_certain() -> None:
+    """A flat linkage in space: along its pins forces are open; what presses on a journal acts across it."""
+    text = (ROOT / "specs" / "flat_four_bar.yaml").read_text().split("expect:")[0]
+    own = re.sub(r"(\n  A: \{type: pin,)", rf"\1 {BEARING},", text)
+    assert own != text
+    joint = solved(own).joints["A"]
+    assert np.isnan(joint["force"][:, 2]).all()
+    assert joint["pressure"] == pytest.approx(np.hypot(*joint["force"][:, :2].T) / AREA, rel=1e-12)
 
 
 def test_it_is_measured_expected_and_shown(heun: Heun, folder: Path) -> None:

@@ -10,12 +10,14 @@ import pytest
 
 from heuncli.errors import SolveError
 from heuncli.integration.contacts.complementarity import complementary
-from heuncli.integration.contacts.restitution import Struck, strikes
+from heuncli.integration.contacts.restitution import MOST_ROUNDS, Struck, strikes
+from heuncli.integration.contacts.sequential_impacts import EndlessImpacts
 from heuncli.integration.contacts.touching import Touching
 from heuncli.integration.run.request import MotionTask
 from heuncli.integration.trajectory import Trajectory
 from heuncli.results import Array
 from heuncli.spec.load import load
+from heuncli.spec.models import ImpactModel
 from heuncli.study.model.setup import set_up
 from tests.shared.scenes import solved
 
@@ -51,43 +53,49 @@ def test_what_cannot_be_held_apart_is_refused() -> None:
         complementary(A, np.array([-1.0, -1.0]), np.full(2, 1e-12))
 
 
+@pytest.mark.parametrize("impacts", ["simultaneous", "sequential"])
 @pytest.mark.parametrize("seed", range(40))
-def test_energy_never_grows(seed: int) -> None:
+def test_energy_never_grows(seed: int, impacts: ImpactModel) -> None:
     """Newton's restitution, any number of contacts, each with its own; what moves apart at once is struck later."""
     rng = np.random.default_rng(100 + seed)
     n, rank = int(rng.integers(1, 6)), int(rng.integers(2, 7))
     W, v = rng.standard_normal((n, rank)), rng.standard_normal(rank)
     none = np.zeros((n, 1, 6))
     e = rng.uniform(0.0, 1.0, n) if seed % 2 else np.full(n, rng.choice([0.0, 0.5, 1.0]))
-    touch = Touching(np.arange(n), none, W @ v, np.full(n, 1e-12), np.full(n, 1e-14), e)
-    found = strikes(touch, W @ W.T, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool))
+    touch = Touching(np.arange(n), none, W @ v, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n))
+    try:
+        found = strikes(touch, W @ W.T, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool), impacts)
+    except EndlessImpacts:
+        assert (e == 1.0).all() and rank < n  # a cage without play
+        return
     after = v + W.T @ found.impulses
     assert (found.impulses >= 0.0).all()
     assert (W @ after >= -1e-9).all()
     assert after @ after <= (v @ v) * (1.0 + 1e-12)
-    if (e == 1.0).all() and not found.equal.any():
+    if (e == 1.0).all() and (impacts == "sequential" or found.count.max() < MOST_ROUNDS):
         assert after @ after == pytest.approx(v @ v)
 
 
-@pytest.mark.parametrize("seed", [3, 19, 86, 90, 165, 177])  # of 4,000 such machines 6 % would gain energy
-def test_machines_that_do_not_feel_each_other_are_struck_as_each_alone(seed: int) -> None:
-    """What would gain energy takes its least restitution beside a ball, too, that loses more; the ball its own."""
+@pytest.mark.parametrize("seed", [3, 19, 86, 90, 165, 177])  # where the work of restitution 1 is above 0 by rounding
+def test_each_contact_takes_its_own_restitution(seed: int) -> None:
+    """Beside others, and beside a machine that it does not feel; no restitution adds energy."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(2, 4))
     W, rate, e = rng.standard_normal((n, n)), -rng.uniform(0.0, 1.0, n), rng.choice([0.0, 1.0, 0.5], n)
     alone = struck(W @ W.T, rate, e)
+    bearing = alone.impulses > 0.0
+    assert alone.rate[bearing] == pytest.approx(-(e * rate)[bearing], rel=1e-14)
     A = np.eye(n + 1)
     A[:n, :n] = W @ W.T
     for ball, bears in ((0.0, 10.0), (0.7, 17.0)):
         beside = struck(A, np.append(rate, -10.0), np.append(e, ball))
-        assert alone.equal.all() and beside.equal.tolist() == [True] * n + [False]
         assert beside.impulses == pytest.approx([*alone.impulses, bears], rel=1e-14)
 
 
 def struck(A: Array, rate: Array, e: Array) -> Struck:
     """Contacts that close."""
     n = len(rate)
-    touch = Touching(np.arange(n), np.zeros((n, 1, 6)), rate, np.full(n, 1e-12), np.full(n, 1e-14), e)
+    touch = Touching(np.arange(n), np.zeros((n, 1, 6)), rate, np.full(n, 1e-12), np.full(n, 1e-14), e, np.ones(n))
     return strikes(touch, A, np.ones(n, dtype=bool), np.zeros(n), np.zeros(n, dtype=bool))
 
 

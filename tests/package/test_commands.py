@@ -73,6 +73,7 @@ def test_a_command_loads_nothing_of_another(command: Command) -> None:
 
 
 def test_the_help_as_typer_makes_it_loads_requests_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
     assert loaded("--help") == set()  # where it is at hand
     monkeypatch.setenv("COLUMNS", "70")
     found = loaded("--help")

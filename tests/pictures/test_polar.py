@@ -187,3 +187,23 @@ def test_hostile_words_are_shown_and_do_nothing(heun: Heun, folder: Path) -> Non
     text = (folder / "drawn.svg").read_text()
     assert "<script" not in text and "\u202e" not in text
     assert any("<script>alert(1)</script>" in each for each in texts_of(text))
+
+
+def test_what_is_open_across_the_plane_hides_nothing_in_it(heun: Heun, folder: Path) -> None:
+    """Pins of a flat linkage in space: along their axes forces are open, across these they are certain."""
+    done = heun("plot", str(SPECS / "flat_four_bar.yaml"), "polar", "joints.A", "-o", "drawn.svg")
+    assert done.returncode == 0
+    words = " ".join(texts_of(Path("drawn.svg").read_text()))
+    assert "joints.A.force: largest" in words
+    assert "across the plane, which is not drawn" in " ".join(words.split())
+
+
+def test_panels_over_one_angle_share_their_grid(heun: Heun, folder: Path) -> None:
+    words = ("joints.crank.force", "coordinates.crank.rate", "--x", "coordinates.crank.angle", "--units", "deg")
+    assert heun("plot", str(SPECS / "four_bar.yaml"), *words, "-o", "x.svg").returncode == 0
+    upright = re.findall(r'points="([0-9.]+),([0-9.]+) \1,([0-9.]+)"[^>]*stroke="#e6e6e6"', Path("x.svg").read_text())
+    grids: dict[str, list[str]] = {}
+    for x, top, _ in upright:
+        grids.setdefault(top, []).append(x)
+    assert len(grids) == 2
+    assert len({tuple(grid) for grid in grids.values()}) == 1

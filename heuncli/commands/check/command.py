@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -107,7 +108,7 @@ def _all(chosen: Sequence[Found], kept: dict[str, str], request: CheckRequest) -
     work = partial(check, request=request, jobs=at_once)
     is_last = _fails if request.first else _none
     with progress(request.quiet) as tell:
-        for one in jobs.each(work, tasks, at_once, _dead, is_last):
+        for one in jobs.each(work, tasks, at_once, _dead, is_last, apart=request.time_limit_each is not None):
             if one.refused:
                 raise UsageError(*one.problems)
             checked.append(one)
@@ -131,12 +132,13 @@ def _none(one: Checked) -> bool:
     return False
 
 
-def _dead(task: Task, how: str) -> Checked:
+def _dead(task: Task, died: jobs.Died) -> Checked:
     """What stands for a spec whose process died."""
     path = task.found.path
     hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"
-    problem = Problem("bug", f"the process that checked it was {how}", hint=hint)
-    return Checked(path, problems=(problem,), error=BUG, said=tuple(lines_of([problem], f"{path}: ")))
+    problem = died.problem("checked it", hint)
+    error = died.code if died.is_time_up else BUG
+    return Checked(path, problems=(problem,), error=error, said=tuple(lines_of([problem], f"{path}: ")))
 
 
 def _say_slowest(checked: Sequence[Checked], most: int | None) -> None:
@@ -156,11 +158,23 @@ def _written(checked: Sequence[Checked], request: CheckRequest) -> list[int]:
             say("heun: no golden file was written: one that stands there cannot be used")
         return []
     for golden in given:
-        try:
-            Path(golden.path).parent.mkdir(parents=True, exist_ok=True)
-        except OSError as reason:
-            raise OutputError(files.failed(golden.path, reason)) from None
-        files.write(as_bytes(golden.text or ""), golden.path)
+        _write_golden(golden.path, as_bytes(golden.text or ""))
         if not request.quiet:
             say(f"heun: {shown(golden.path)} {'written' if golden.is_new else 'written anew'}")
     return []
+
+
+def _write_golden(path: str, content: bytes) -> None:
+    """Write a golden file, with the folders above it; where it cannot be written no new folder is left empty."""
+    missing = [folder for folder in Path(path).parents if not folder.exists()]
+    try:
+        try:
+            Path(path).parent.mkdir(parents=True, exist_ok=True)
+        except OSError as reason:
+            raise OutputError(files.failed(path, reason)) from None
+        files.write(content, path)
+    except OutputError:
+        for folder in missing:  # the innermost first
+            with contextlib.suppress(OSError):  # it was never made, or another file stands in it
+                folder.rmdir()
+        raise

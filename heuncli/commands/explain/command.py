@@ -18,8 +18,8 @@ FOLDER = Path(__file__).parents[2] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
 PAGES = tuple(dict.fromkeys((
     "commands", "format", "howto", "elements", "python", "results", "signs", "open", "stresses", "collectives", "rest",
-    *(command.page for command in COMMANDS), "accuracy", "codes", "limits", "theory", "equations", "references",
-    "decisions", "speed", "developing", "contributing", "index",
+    *(command.page for command in COMMANDS), "accuracy", "codes", "impacts", "limits", "theory", "equations",
+    "references", "decisions", "speed", "developing", "contributing", "index",
 )))  # fmt: skip
 
 OTHERS = (

@@ -15,6 +15,7 @@ from heuncli.study.compose.accuracy import Balance, accuracy_of
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.finiteness import require_finite
 from heuncli.study.compose.recovery import Recovery, certain_sums
+from heuncli.study.compose.smoothed_friction import has_smoothed_friction, samples_with_partial
 from heuncli.study.compose.warnings import beside_singular_poses, status, warnings
 from heuncli.study.model.method_choice import anew
 from heuncli.study.model.selection import sums_among
@@ -56,7 +57,7 @@ def compose(
         title=setup.spec.title,
         spec={"path": setup.spec.path, "sha256": setup.spec.sha256},
         version=VERSION,
-        model=model_of(setup, history, recovery),
+        model=model_of(setup, history, recovery, whole=len(own.times) == len(recovery.recovered.times)),
         status=status(history, setup.scene.mechanism) if rest is None else rest.status,
         time=own.times,
         **own.shown,
@@ -142,8 +143,11 @@ def impulses_of(setup: Setup, history: History, least_norm: bool, by_cause: bool
     return impulses(setup, history, least_norm, by_cause)
 
 
-def model_of(setup: Setup, history: History, recovery: Recovery) -> Block:
-    """What the results say of the model, that of the run with what only the run shows."""
+def model_of(setup: Setup, history: History, recovery: Recovery, *, whole: bool) -> Block:
+    """What the results say of the model, that of the run with what only the run shows.
+
+    whole: whether `recovery` is at all instants of the results.
+    """
     split = recovery.decided.words if recovery.verdicts and recovery.decided is not None else ()
     return (
         setup.model
@@ -152,7 +156,16 @@ def model_of(setup: Setup, history: History, recovery: Recovery) -> Block:
         | ({"axes": setup.asked.axes} if setup.asked.axes != "world" else {})
         | contacts_of(history)
         | integrated(setup, history)
+        | (friction_near_rest(setup, recovery) if whole else {})
     )
+
+
+def friction_near_rest(setup: Setup, recovery: Recovery) -> Block:
+    """What is told of instants at which smoothed friction is not at its value; of a rest pose nothing rubs."""
+    if setup.rest is not None or not has_smoothed_friction(setup.scene.mechanism):
+        return {}
+    notes = samples_with_partial(setup.scene.mechanism, recovery.recovered)
+    return {"notes": [*setup.model["notes"], *notes]} if notes else {}
 
 
 def not_at_rest(recovery: Recovery) -> Block:
@@ -166,8 +179,8 @@ def not_at_rest(recovery: Recovery) -> Block:
 
 
 def contacts_of(history: History) -> Block:
-    """What is told of contacts: who was struck at once, who came to rest after how many strikes."""
-    notes = history.checked.run.notes if history.checked is not None else ()
+    """What is told of contacts: how they share blows, who came to rest after how many strikes."""
+    notes = history.checked.run.notes if history.checked is not None else history.notes
     return {"contacts": list(notes)} if notes else {}
 
 

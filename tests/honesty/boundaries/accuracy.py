@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ from heuncli.integration.check.runs import shared_steps
 from heuncli.integration.run.pace import hopeless
 from heuncli.report.labels import labels_of
 from heuncli.report.page import page_of
+from heuncli.study.ask.smoothed_friction import friction_warning
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import bar, read
 from tests.shared.scenes import near, study
@@ -75,12 +77,29 @@ forces:
     return "0" if table.notes == ("0 throughout",) else "a number"
 
 
+def friction_of_a_sledge(x: float) -> str:
+    """A sledge whose friction lacks x of its value, tanh(rate/speed) = 1 - x: whether that is told."""
+    rate = math.atanh(1.0 - x)
+    run = study(f"""
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{b: {{mass: 2, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}}}
+joints: {{guide: {{type: slide, from: ground.O, to: b.o, axis: [1, 0, 0], initial: {{travel: 0, speed: {rate!r}}}}}}}
+forces: {{rub: {{type: friction, joint: guide, force: 3, speed: 1}}}}
+analysis: {{type: state}}
+""", wanted=frozenset({"motion", "forces"}))  # fmt: skip
+    near(run.results.forces["rub"]["value"], [-3.0 * (1.0 - x)], 1.0)
+    word = friction_warning(run, "coordinates.guide.acceleration", 0.0)
+    return "full" if word is None else "told"
+
+
 PART = Part(
     ("", "accuracy"),
     rows=(
         Row("LEAST_ASKED", tolerance, "refused: tolerance", "fine"),
         Row("MOST_ASKED", tolerance, "fine", "refused: tolerance"),
         Row("WRITTEN", left_of, "0", "a number"),
+        Row("FRICTION_LACKS", friction_of_a_sledge, "full", "told"),
         Row("JUDGED", judged, "judged", "not judged"),
         Row("LOST", off_by, "on the front", "lost"),
         Row("MOST_STEPS", steps_given, "fine", "refused: step"),

@@ -11,6 +11,8 @@ import pytest
 from heuncli import tolerances
 from heuncli.integration.contacts.complementarity import complementary
 from heuncli.integration.contacts.resting import short_flights
+from heuncli.integration.contacts.restitution import strikes
+from heuncli.integration.contacts.sequential_impacts import independent
 from heuncli.integration.contacts.touching import Touching, answerable
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, study
@@ -72,16 +74,30 @@ def hardly_moved(x: float) -> str:
     """A contact on a body of 1 kg that gives way to a part of what it would if it were free."""
     layout: Any = SimpleNamespace(bodies={"mass": np.ones(1)}, size=1.0)
     one = np.ones(1)
-    touch = Touching(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one)
+    touch = Touching(np.zeros(1, dtype=int), np.array([[[0.0, 0, 0, 0, 0, 1.0]]]), one, one, one, one, one)
     return "moves" if answerable(layout, touch, np.array([[x]]))[0] else "held"
 
 
 def hop(x: float) -> str:
     """A flight of so much time, at once and too high to be none."""
     one = np.ones(1)
-    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, np.zeros(1), one)
+    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, np.zeros(1), one, one)
     short = short_flights(touch, one, -2.0 * one / x, tolerances.SHORTEST_FLIGHT)
     return "none" if short[0] else "flies"
+
+
+def closing_together(x: float) -> str:
+    """Two contacts of one body whose equal gaps close at times that differ by twice a part of them."""
+    A, rate, none = np.array([[1.0, 0.5], [0.5, 1.0]]), np.array([-1.0, -1.0 - 2.0 * x]), np.zeros(2)
+    touch = Touching(np.arange(2), np.zeros((2, 1, 6)), rate, none, none, np.ones(2), np.ones(2))
+    found = strikes(touch, A, np.ones(2, dtype=bool), none, np.zeros(2, dtype=bool), "sequential")
+    return "together" if np.allclose(found.impulses, 4.0 / 3.0, rtol=1e-6) else "in turn"
+
+
+def own_answer(x: float) -> str:
+    """A contact of which the one before it leaves so much of its own answer."""
+    c = np.sqrt(1.0 - x)
+    return "solved" if len(independent(np.array([[1.0, c], [c, 1.0]]))) == 2 else "stays"
 
 
 PART = Part(
@@ -90,6 +106,8 @@ PART = Part(
         Row("CONTACT_TOUCHES", near_the_floor, "rests", "falls"),
         Row("CONTACT_RATE", opening_rope, "taut", "struck"),
         Row("CONTACT_ACCELERATION", pressed, "open", "bears"),
+        Row("CONTACT_TOGETHER", closing_together, "together", "in turn"),
+        Row("CONTACT_BASIS", own_answer, "stays", "solved"),
         Row("CONTACT_DEPENDS", leaning, "leans", "open"),
         Row("NO_ANSWER", hardly_moved, "held", "moves"),
         Row("SHORTEST_FLIGHT", hop, "none", "flies"),
