@@ -79,7 +79,7 @@ def extremes_of(ask: Ask, base: NoisyValue, spread: NumberSpread, slope: NoisyDe
     linear = abs(slope.value) * t if slope.value is not None else None
     shown: dict[float, NoisyValue] = {x: ask({name: x}) for x in (-t, -INSIDE * t, INSIDE * t, t)}
     changes = {x: change for x, one in shown.items() if (change := change_of(one, base)) is not None}
-    below, above = (changes.get(x, (None,))[0] for x in (-t, t))
+    below, above = (changes[x][0] if x in changes else None for x in (-t, t))
     why = next((one.why for one in shown.values() if one.value is None), ("", ""))
     lead = name, t, spread.number.unit
     if (
