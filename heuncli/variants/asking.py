@@ -45,13 +45,15 @@ class Measured(NamedTuple):
 class Answer(NamedTuple):
     """What a variant answered: its measures, or the code and the reason why it could not be solved.
 
-    warnings: of the run, in sentences.
+    warnings: of the run, in sentences; singular: whether its motion passes a singular pose, or an instant beside one is
+    left out of its extremes: its numbers may then be others than those of variants close by.
     """
 
     measures: tuple[Measured, ...] = ()
     code: str = ""
     reason: str = ""
     warnings: tuple[str, ...] = ()
+    singular: bool = False
 
 
 class Recipe(NamedTuple):
@@ -137,7 +139,9 @@ class Asker:
         study = self.study(values)
         measures = tuple(measured(asked, study) for asked in self.recipe.measures)
         read = (problem.message for problem in study.spec.warnings if problem.code not in OF_WORDS)
-        return Answer(measures, warnings=tuple(dict.fromkeys((*read, *study.results.warnings, *study.later_warnings))))
+        warnings = tuple(dict.fromkeys((*read, *study.results.warnings, *study.later_warnings)))
+        singular = bool(len(study.history.singular) or study.left_out or study.unknown)
+        return Answer(measures, warnings=warnings, singular=singular)
 
     def _with_case(self, values: Mapping[str, str]) -> tuple[Variants, Mapping[str, str]]:
         case = values.get(CASE) if varies_cases(self.spec) else None

@@ -11,7 +11,9 @@ Of lhs all parameters together are one Latin hypercube, of sobol one scrambled S
 them by this seed; a normal beside them is a further coordinate of that plan.
 
 For Sobol indices every sample is drawn twice, A and B, and d variants follow it which are A but for one parameter, that
-of B (Saltelli 2010): d + 2 variants a sample, one behind the other.
+of B (Saltelli 2010): d + 2 variants a sample, one behind the other. One plan tells nothing of how far its indices are
+off, since its points hang on each other. So the samples are of REPETITIONS plans in turn, each scrambled or shuffled by
+itself: sample k is the next point of plan k mod REPETITIONS.
 """
 
 from __future__ import annotations
@@ -27,6 +29,7 @@ from heuncli.variants.plans import MOST_VARIANTS, Draws
 
 BITS = 52  # of a random number: (k + 1/2) / 2^52 is neither 0 nor 1, and exact
 JOINT = ("lhs", "sobol")
+REPETITIONS = 16  # of a plan for Sobol indices
 LEAST = 0.5 * 2.0**-BITS  # of them
 SAMPLES_HINT = "such as --samples 1000"
 
@@ -40,12 +43,13 @@ def draws_of(laws: Sequence[Drawn], samples: int, seed: int = 0, *, indices: boo
     if seed < 0:
         raise AxisError("--seed", f"{seed}: expected a number from 0 on", "such as --seed 7")
     copies = 2 if indices else 1
-    points = _points(laws, samples, seed, copies).reshape(samples, copies, len(laws))
+    repetitions = REPETITIONS if indices and joint_law(laws) else 1
+    points = _points(laws, samples, seed, copies, repetitions).reshape(samples, copies, len(laws))
     for place, law in enumerate(laws):
         points[..., place] = _by_law(law, points[..., place])
     if not indices:
         return Draws(tuple(laws), points[:, 0], seed)
-    return Draws(tuple(laws), with_one_exchanged(points[:, 0], points[:, 1]), seed, len(laws) + 2)
+    return Draws(tuple(laws), with_one_exchanged(points[:, 0], points[:, 1]), seed, len(laws) + 2, repetitions)
 
 
 def with_one_exchanged(A: Array, B: Array) -> Array:
@@ -83,7 +87,7 @@ def _require_few(laws: Sequence[Drawn], samples: int, each: int) -> None:
         raise AxisError(names, f"{samples * each:,} variants; at most {MOST_VARIANTS:,}", "fewer --samples")
 
 
-def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int) -> Array:
+def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int, repetitions: int) -> Array:
     """Numbers in [0, 1), (samples, copies d): the d parameters of the first copy, then those of the next."""
     law = joint_law(laws)
     d = len(laws)
@@ -95,7 +99,9 @@ def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int) -> Arra
                 points[:, copy * d + place] = _stream(one.name, seed, copy, samples)
     if together:
         columns = [copy * d + place for copy in range(copies) for place in together]
-        points[:, columns] = _joint(law, len(columns), samples, seed)
+        for one in range(min(repetitions, samples)):
+            own = np.arange(one, samples, repetitions)
+            points[np.ix_(own, columns)] = _joint(law, len(columns), len(own), (seed, one) if repetitions > 1 else seed)
     return points
 
 
@@ -107,7 +113,7 @@ def _stream(name: str, seed: int, copy: int, samples: int) -> Array:
     return found
 
 
-def _joint(law: str, columns: int, samples: int, seed: int) -> Array:
+def _joint(law: str, columns: int, samples: int, seed: int | tuple[int, int]) -> Array:
     """The points of one plan in all columns, (samples, columns) in [0, 1]."""
     from scipy.stats import qmc  # half a second, where it is asked for
 

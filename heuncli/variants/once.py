@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
@@ -9,6 +10,8 @@ from heuncli.tolerances import EPS
 from heuncli.variants.asking import Answer, Asker
 
 ROUNDING = 8.0 * EPS  # of a measure: what some sums of a run's last step leave where it states no more
+FIGURES = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
+SEVERAL = re.compile(r"#(?:(?:, | to )#)+(?: \.\.\.)?")
 # why there is no measure, by the word that stands for it
 REASONS: Mapping[str, str] = MappingProxyType(
     {
@@ -42,9 +45,15 @@ class AnswersOnce:
         return self._known[key]
 
     def warnings(self) -> dict[str, int]:
-        """What the variants warned of, and how many of them."""
-        found: dict[str, int] = {}
+        """What the variants warned of, the first sentence of each kind, and how many of them."""
+        found: dict[str, tuple[str, int]] = {}
         for answer in self._known.values():
-            for text in answer.warnings:
-                found[text] = found.get(text, 0) + 1
-        return found
+            for kind, text in {kind_of_warning(text): text for text in answer.warnings}.items():
+                first, so_far = found.get(kind, (text, 0))
+                found[kind] = first, so_far + 1
+        return dict(found.values())
+
+
+def kind_of_warning(text: str) -> str:
+    """A warning without its figures, which differ from variant to variant."""
+    return SEVERAL.sub("#", FIGURES.sub("#", text))

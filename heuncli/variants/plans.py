@@ -18,13 +18,15 @@ MOST_VARIANTS = 10_000_000
 class Draws(NamedTuple):
     """Random parameters together: their laws, and what is drawn of them in their units, (variants, parameters).
 
-    seed: by which the same are drawn again; each: so many variants in a row are of one sample (draws.py).
+    seed: by which the same are drawn again; each: so many variants in a row are of one sample; repetitions: the
+    k-th sample is of the k-th of so many plans, taken in turn, each drawn by itself (draws.py).
     """
 
     laws: tuple[Drawn, ...]
     values: Array
     seed: int
     each: int = 1
+    repetitions: int = 1
 
 
 class Plan(NamedTuple):

@@ -268,3 +268,17 @@ def test_standard_input_is_a_spec_and_a_table(heun: Heun, scene: Path) -> None:
     assert heun("sweep", "-", *words, text=SCENE) == heun("sweep", "scene.yaml", *words)
     table = heun("sweep", "scene.yaml", "--variants", "-", *FORCE, "--format", "csv", text="m [kg]\n1\n2\n")
     assert table == heun("sweep", "scene.yaml", *words)
+
+
+def test_all_load_cases_are_zipped_like_the_list_of_them(heun: Heun, folder: Path) -> None:
+    """As many values as the spec has cases; another count is refused, and so it is combined without --zip."""
+    text = (folder / "hanging.yaml").read_text() + "cases: {a: {set: {m: 2}}, b: {set: {m: 3}}, c: {set: {m: 4}}}\n"
+    (folder / "cases.yaml").write_text(text)
+    measure = ("--measure", "joints.pivot.force.z", "--format", "csv")
+    tilt = "gravity=[0, 0, -1],[0, 0, -2],[0, 0, -3]"
+    one, other = (heun("sweep", "cases.yaml", f"case={of}", tilt, "--zip", *measure) for of in ("all", "a,b,c"))
+    assert one.returncode == 0 and one.stdout == other.stdout and len(one.stdout.splitlines()) == 4
+    first = heun("sweep", "cases.yaml", tilt, "case=all", "--zip", *measure)
+    assert first.returncode == 0 and len(first.stdout.splitlines()) == 4
+    wrong = heun("sweep", "cases.yaml", "case=all", "gravity=[0, 0, -1],[0, 0, -2]", "--zip", *measure)
+    assert wrong.returncode == 2 and "case 3, gravity 2 [bad-option]" in wrong.stderr

@@ -174,3 +174,47 @@ def test_a_spread_that_is_not_is_told_by_the_variants(heun: Heun) -> None:
     loss = 100.0 * (1.0 - math.cos(30.0 * DEG))
     assert one["by_variants"] and one["size"] == pytest.approx(loss, rel=1e-9)
     assert (one["below"], one["above"]) == (pytest.approx(loss, rel=1e-9), pytest.approx(loss, rel=1e-9))
+
+
+FORCE = """\
+heun: 1
+title: A force that follows a formula
+parameters: {{x: {x!r}, y: 5, F: "{formula}"}}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies:
+  a: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}
+joints: {{w: {{type: weld, from: ground.O, to: a.o}}}}
+forces: {{f: {{type: force, on: a.o, vector: [-F, 0, 0]}}}}
+"""
+
+
+def test_what_ends_and_derivative_do_not_show_is_searched(heun: Heun) -> None:
+    """sin 20 x + y about x = 0: both ends lie where it is 0 again, the derivative says 3.14; it moves by 1 each way."""
+    text = FORCE.format(x=0.0, formula="sin(20*x)+y")
+    total = told(heun, text, "joints.w.force.x", "x", "y", "--spread", f"x={math.pi / 20.0!r},y=0.01")["spread"]
+    assert abs(total["worst"] - 1.01) <= total["worst_error"] < 0.01
+    one, other = total["contributions"]
+    assert one["by_variants"] and not other["by_variants"]
+    assert abs(one["least"][0] + math.pi / 40.0) < 2e-3 and abs(one["greatest"][0] - math.pi / 40.0) < 2e-3
+
+
+def test_numbers_that_matter_only_together(heun: Heun) -> None:
+    """x y about 0 and 5: 5 t alone, and 5.5 t with y at its end."""
+    text = FORCE.format(x=0.0, formula="x*y")
+    total = told(heun, text, "joints.w.force.x", "x", "y", "--spread", "x=0.2,y=0.5")["spread"]
+    assert abs(total["worst"] - 1.1) <= total["worst_error"] and total["worst"] >= 1.1 - 1e-9
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_worst_case_covers_measures_that_are_not_monotone(heun: Heun, seed: int) -> None:
+    """Two waves: no less than the true largest change, but for the stated error."""
+    rng = np.random.default_rng([77, seed])
+    a, w, p = rng.uniform(0.2, 2.0), rng.uniform(2.0, 25.0), rng.uniform(0.0, 6.0)
+    x0, t = rng.uniform(-1.0, 1.0), rng.uniform(0.05, 0.4)
+    text = FORCE.format(x=float(x0), formula=f"{a!r}*sin({w!r}*x+{p!r})+0.3*x+y")
+    total = told(heun, text, "joints.w.force.x", "x", "--spread", f"x={t!r}")["spread"]
+    x = np.linspace(x0 - t, x0 + t, 20_001)
+    m = a * np.sin(w * x + p) + 0.3 * x
+    true = float(np.abs(m - (a * math.sin(w * x0 + p) + 0.3 * x0)).max())
+    assert true - total["worst"] <= total["worst_error"] + 1e-9
+    assert total["worst"] <= 1.05 * true + total["worst_error"]

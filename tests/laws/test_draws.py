@@ -95,9 +95,12 @@ def test_saltellis_plan_exchanges_one_parameter_after_the_other(kind: str) -> No
     for i, rows in enumerate(exchanged):
         others = [j for j in range(3) if j != i]
         assert np.array_equal(rows[:, i], B[:, i]) and np.array_equal(rows[:, others], A[:, others])
-    if kind == "sobol":  # of A and B together, as scipy.stats.sobol_indices has it
-        own = qmc.Sobol(6, seed=np.random.default_rng(1)).random(16)
-        assert np.array_equal(A[:, 0], own[:, 0]) and np.array_equal(B[:, 1], own[:, 4] + 5.0)
+    if kind == "sobol":  # of A and B together, as scipy.stats.sobol_indices has it; of 16 plans in turn
+        own = qmc.Sobol(6, seed=np.random.default_rng((1, 3))).random(2)
+        more = draws_of(laws, 32, 1, indices=True).values.reshape(32, 5, 3)
+        assert np.array_equal(more[[3, 19], 0, 0], own[:, 0]) and np.array_equal(more[[3, 19], 1, 1], own[:, 4] + 5.0)
+        assert np.array_equal(more[:16], drawn.values.reshape(16, 5, 3))  # it goes on with more samples
+    assert drawn.repetitions == (1 if kind == "uniform" else 16)
 
 
 def test_every_combination_of_the_other_axes_gets_the_same_samples() -> None:

@@ -14,7 +14,6 @@ from heuncli.cli.solving import overrides, tolerance
 from heuncli.cli.target import format_of
 from heuncli.cli.units import say_what_stays, units
 from heuncli.cli.variant_warnings import warn_of_variants
-from heuncli.commands.find.course import Sample
 from heuncli.commands.find.page import FORMS, FoundPage
 from heuncli.commands.find.request import FindRequest
 from heuncli.commands.find.results import CourseFindings, FindCondition
@@ -28,6 +27,7 @@ from heuncli.telling import measure
 from heuncli.variants.asking import Asker, Recipe
 from heuncli.variants.axes import Interval, interval_of
 from heuncli.variants.conditions import condition_of, in_si
+from heuncli.variants.course import Sample
 from heuncli.variants.once import REASONS, ROUNDING, AnswersOnce
 from heuncli.variants.stated import unit_of
 
@@ -57,7 +57,7 @@ def main(request: FindRequest) -> int:
     with progress(request.quiet) as tell:
         once = AnswersOnce(asker, lambda runs: tell(min(runs, 2 * scan), 2 * scan, "variants"))
         ask = asking(once, interval, condition)
-        found = look(ask, interval.low, interval.high, condition.relation, count=scan, most=most)
+        found = look(ask, interval.low, interval.high, condition.relation, count=scan, most=most, value=value)
     require_some(found)
     own = shown if request.units else in_unit(shown, condition)
     page = FoundPage(asker.spec.title, condition, interval, found, scan, most, own)
@@ -91,7 +91,8 @@ def asking(once: AnswersOnce, interval: Interval, condition: FindCondition) -> C
         if found.value is None:
             return Sample(x, None, why=(found.word, REASONS[found.word]))
         rounding = ROUNDING * (abs(found.value) + abs(condition.value))
-        return Sample(x, found.value - condition.value, max(found.error or 0.0, rounding))
+        error = max(found.error or 0.0, rounding)
+        return Sample(x, found.value - condition.value, error, singular=answer.singular)
 
     return ask
 

@@ -7,8 +7,16 @@ import io
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from heuncli.commands.find.course import Sample
-from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, FindCondition, MetEdge, Touch
+from heuncli.commands.find.results import (
+    CourseFindings,
+    CourseJump,
+    Crossing,
+    FindCondition,
+    MetEdge,
+    OpenBracket,
+    Touch,
+    UnsolvedStretch,
+)
 from heuncli.commands.find.study import SIDES
 from heuncli.expressions.units import parse_unit
 from heuncli.named_tuples import NamedTuple
@@ -20,6 +28,7 @@ from heuncli.report.plurals import count
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
 from heuncli.variants.axes import Interval
+from heuncli.variants.course import Sample
 from heuncli.version import VERSION
 
 WAYS = {1: "rises", -1: "falls", 0: "at the end"}
@@ -28,6 +37,7 @@ SCAN = (
     "that may be missed where nothing beside them tells of them"
 )
 ENDED = "ended after {}: there may be more, and what stands here may be unfinished (--evaluations)"
+MOST_ALONE = 2  # variants in singular poses that are told one by one
 CSV_COLUMNS = ("kind", "value", "error", "unit", "measure", "measure_error", "measure_unit", "word", "reason")
 
 
@@ -108,22 +118,26 @@ def _met(page: FoundPage) -> TextTable:
 
 def _edge(page: FoundPage, edge: MetEdge) -> tuple[str, str]:
     error = f", ± {rough(edge.error)}" if edge.error else ""
-    words = {"end": "end of the interval", "unsolved": "last variant that is solved"}
+    words = {
+        "end": "end of the interval", "unsolved": "last variant that is solved", "bracket": "not closed",
+    }  # fmt: skip
     return with_digits(edge.x, edge.error), words.get(edge.kind, edge.kind) + error
 
 
 def notes(page: FoundPage) -> Iterator[str]:
     """Sentences on what is no row."""
     found, condition = page.found, page.condition
-    if SIDES[condition.relation] and not found.met:
-        yield "met nowhere" + _where(page)
-    elif not (found.crossings or found.touches):
+    if SIDES[condition.relation] and not (found.met or ("=" in condition.relation and not found.is_met_nowhere)):
+        yield ("met nowhere" if found.complete else "not met in what was looked at") + _where(page)
+    elif found.is_met_nowhere:
         yield ("no crossing" if SIDES[condition.relation] else "met nowhere") + _where(page)
+    elif not (found.crossings or found.touches or found.brackets):
+        yield "not met in what was looked at" + _where(page)
     yield from (_touch(page, each) for each in found.touches)
     yield from (_jump(page, each) for each in found.jumps)
+    yield from (_bracket(page, each) for each in found.brackets)
     for each in found.unsolved:
-        ends = f"{page.at(each.low)} to {with_digits(each.high, 0.0)}"
-        yield f"no measure from {ends} ({count(each.variants, 'variant')}): {each.reason} [{each.code}]"
+        yield from _unsolved(page, each)
     if not found.complete:
         yield ENDED.format(count(len(found.samples), "variant"))
 
@@ -151,6 +165,28 @@ def _jump(page: FoundPage, each: CourseJump) -> str:
     return f"jumps from {before} to {after} at {page.at(each.before.x)} (within {width}): the value is not met there"
 
 
+def _bracket(page: FoundPage, each: OpenBracket) -> str:
+    before, after = (page.measure(one.gap or 0.0, one.error) for one in each)
+    ends = f"{page.at(each.before.x)}, and {after} at {page.at(each.after.x)}"
+    return f"passes the value between {before} at {ends}: a crossing or a jump that the search did not close"
+
+
+def _unsolved(page: FoundPage, each: UnsolvedStretch) -> Iterator[str]:
+    """Where there is no measure, and how well its ends are known."""
+    stretch = f"{page.at(each.low)} to {with_digits(each.high, 0.0)}"
+    yield f"no measure from {stretch} ({count(each.variants, 'variant')}): {each.reason} [{each.code}]"
+    ends = [(each.low, each.first, "last", "first"), (each.high, each.last, "first", "last")]
+    for solved, failed, of_solved, of_failed in ends:
+        if solved != failed:
+            error = rough(abs(solved - failed))
+            text = f"{of_solved} solved at {page.interval.text(solved)}, {of_failed} not solved at"
+            yield f"  {text} {page.interval.text(failed)} (± {error})"
+    for one in each.withheld[:MOST_ALONE]:
+        yield f"  at {page.interval.text(one.x)} alone: {page.measure(one.withheld or 0.0, one.error)}"
+    if len(each.withheld) > MOST_ALONE:
+        yield f"  and {count(len(each.withheld) - MOST_ALONE, 'variant')} more in singular poses"
+
+
 def to_json(page: FoundPage) -> str:
     """All that was found; measures in SI, places in the unit of the interval and in SI."""
     interval, condition, found = page.interval, page.condition, page.found
@@ -165,9 +201,15 @@ def to_json(page: FoundPage) -> str:
             for each in found.touches
         ],
         "jumps": [{"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.jumps],
+        "brackets": [{"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.brackets],
         "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in found.met],
         "unsolved": [
-            {"from": each.low, "to": each.high, "code": each.code, "reason": each.reason, "variants": each.variants}
+            {
+                "from": each.low, "to": each.high, "code": each.code, "reason": each.reason, "variants": each.variants,
+                "first": each.first, "last": each.last,
+                "from_error": each.first - each.low, "to_error": each.high - each.last,
+                "alone": [_alone(page, one) for one in each.withheld],
+            }
             for each in found.unsolved
         ],
         **{word: _place(page, each) for word, each in _extremes(found)}, "refined": found.refined,
@@ -195,6 +237,11 @@ def _place(page: FoundPage, sample: Sample) -> dict[str, Any]:
     return {**told, "measure": sample.gap + page.condition.value, "measure_error": sample.error}
 
 
+def _alone(page: FoundPage, sample: Sample) -> dict[str, Any]:
+    """A variant in a singular pose, with the measure that is no neighbour of the others."""
+    return _place(page, sample._replace(gap=sample.withheld, withheld=None))
+
+
 def to_csv(page: FoundPage) -> str:
     """A line each: crossings, touches, ends of jumps and of what is met, extremes, and every variant."""
     text = io.StringIO()
@@ -208,6 +255,9 @@ def to_csv(page: FoundPage) -> str:
     for jump in found.jumps:
         writer.writerow(_line(page, "jump", jump.before, 0.0, "before"))
         writer.writerow(_line(page, "jump", jump.after, 0.0, "after"))
+    for bracket in found.brackets:
+        writer.writerow(_line(page, "bracket", bracket.before, 0.0, "before"))
+        writer.writerow(_line(page, "bracket", bracket.after, 0.0, "after"))
     for met in found.met:
         for edge, word in zip(met, ("from", "to"), strict=True):
             writer.writerow(["met", edge.x, edge.error, page.interval.unit, "", "", "", word, edge.kind])

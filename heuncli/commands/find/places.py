@@ -14,9 +14,19 @@ import math
 from collections.abc import Iterator
 from itertools import groupby
 
-from heuncli.commands.find.course import APART, MeasureCourse, Sample, slope
-from heuncli.commands.find.results import CourseJump, Crossing, Met, MetEdge, Touch, UnsolvedStretch
+from heuncli.commands.find.results import (
+    CourseJump,
+    Crossing,
+    EdgeKind,
+    Met,
+    MetEdge,
+    OpenBracket,
+    Touch,
+    UnsolvedStretch,
+)
+from heuncli.commands.find.touches import least_distances, touch_at
 from heuncli.named_tuples import NamedTuple
+from heuncli.variants.course import APART, MeasureCourse, Sample, slope
 
 CLEAR = 20.0  # times E: neighbours by which a slope is known to a tenth
 SURE = 0.5  # of a slope: what it may be off by
@@ -61,9 +71,12 @@ def groups(course: MeasureCourse) -> list[SideGroup]:
     return [SideGroup(members) for _, members in groupby(course.samples, key=lambda sample: sample.side)]
 
 
-def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump]:
-    """Where the course meets its value or jumps across it."""
+def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump | OpenBracket]:
+    """Where the course meets its value, jumps across it, or passes it in a way that is not known."""
     found = groups(course)
+    for _, middle, _ in least_distances(course):
+        if (reached := touch_at(course, middle)) is not None:
+            yield Touch(middle, *reached, middle.side or 0)
     for k, group in enumerate(found):
         before = found[k - 1].side if k else None
         after = found[k + 1].side if k + 1 < len(found) else None
@@ -75,6 +88,8 @@ def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump]:
                 yield CourseJump(one, other)
             elif (one.x, other.x) in course.steep:
                 yield Crossing(min(one, other, key=_size), other.x - one.x, group.side)
+            elif not course.parted(course.samples.index(one)):
+                yield OpenBracket(one, other)
 
 
 def met_by(course: MeasureCourse, group: SideGroup, before: int | None, after: int | None) -> Crossing | Touch:
@@ -187,7 +202,9 @@ def unsolved(course: MeasureCourse) -> Iterator[UnsolvedStretch]:
         high = samples[places[-1] + 1].x if places[-1] + 1 < len(samples) else course.high
         reasons = [samples[i].why for i in places]
         code, reason = max(dict.fromkeys(reasons), key=lambda why: sum(each[0] == why[0] for each in reasons))
-        yield UnsolvedStretch(low, high, code, reason, len(places))
+        apart = tuple(samples[i] for i in places if samples[i].withheld is not None)
+        ends = samples[places[0]].x, samples[places[-1]].x
+        yield UnsolvedStretch(low, high, code, reason, len(places), *ends, apart)
 
 
 def met(course: MeasureCourse, wanted: int, *, equal: bool) -> Iterator[Met]:
@@ -211,14 +228,16 @@ def edge(course: MeasureCourse, last: Sample, beside: SideGroup | None) -> MetEd
     if beside is None:
         return MetEdge(last.x, 0.0, "end")
     if beside.side is None:
-        return MetEdge(last.x, 0.0, "unsolved")
+        failed = beside[0] if beside[0].x > last.x else beside[-1]
+        return MetEdge(last.x, abs(failed.x - last.x), "unsolved")
     if beside.side:
         pair = tuple(sorted((last.x, (beside[0] if beside[0].x > last.x else beside[-1]).x)))
-        return MetEdge(last.x, pair[1] - pair[0], "crossing" if pair in course.steep else "jump")
+        kind: EdgeKind = "crossing" if pair in course.steep else "jump" if pair in course.jumps else "bracket"
+        return MetEdge(last.x, pair[1] - pair[0], kind)
     best = min(beside, key=_size)
     if at_end(course, beside):
         return MetEdge((beside[-1] if best.x > last.x else beside[0]).x, 0.0, "end")
-    found = next(each for each in meetings(course) if not isinstance(each, CourseJump) and each.sample is best)
+    found = next(each for each in meetings(course) if isinstance(each, Crossing | Touch) and each.sample is best)
     if isinstance(found, Touch):
         return MetEdge(best.x, found.high - found.low, "touch")
     return MetEdge(best.x, found.error, "crossing")

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from heuncli.commands.find.course import Sample
 from heuncli.named_tuples import NamedTuple
 from heuncli.variants.conditions import Sign
+from heuncli.variants.course import Sample
 
-EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved"]
+EdgeKind = Literal["crossing", "jump", "touch", "end", "unsolved", "bracket"]
 
 
 class FindCondition(NamedTuple):
@@ -53,14 +53,27 @@ class CourseJump(NamedTuple):
     after: Sample
 
 
+class OpenBracket(NamedTuple):
+    """Neighbours on different sides of the value between which the search did not go on: a crossing, or a jump."""
+
+    before: Sample
+    after: Sample
+
+
 class UnsolvedStretch(NamedTuple):
-    """Where there is no measure, between the last places at which there is one: why, and how many variants tell it."""
+    """Where there is no measure, between the last places at which there is one: why, and how many variants tell it.
+
+    first, last: of the variants that fail; withheld: the variants of singular poses among them.
+    """
 
     low: float
     high: float
     code: str
     reason: str
     variants: int
+    first: float
+    last: float
+    withheld: tuple[Sample, ...] = ()
 
 
 class MetEdge(NamedTuple):
@@ -88,6 +101,7 @@ class CourseFindings(NamedTuple):
     crossings: tuple[Crossing, ...]
     touches: tuple[Touch, ...]
     jumps: tuple[CourseJump, ...]
+    brackets: tuple[OpenBracket, ...]
     unsolved: tuple[UnsolvedStretch, ...]
     met: tuple[Met, ...]
     least: Sample | None
@@ -96,3 +110,8 @@ class CourseFindings(NamedTuple):
     samples: tuple[Sample, ...]
     spacing: float
     complete: bool
+
+    @property
+    def is_met_nowhere(self) -> bool:
+        """Whether the samples allow to say that the value is met nowhere."""
+        return self.complete and not (self.crossings or self.touches or self.brackets)

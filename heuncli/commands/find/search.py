@@ -12,30 +12,33 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from heuncli.commands.find.course import NOISE, Between, MeasureCourse, Sample, polynomial
+from heuncli.variants.course import NOISE, Between, MeasureCourse, Sample, polynomial
+from heuncli.variants.course_extremes import place_inside
 
-INWARD = 0.1  # of an interval: a place nearer to its end than that would tell little
-END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: how well it is told where variants begin to fail
+END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: nearer to where variants begin to fail edges.py looks
+NEAR_JUMP = 1.0 / 256.0  # of the scan's spacing: nearer to a jump or an edge the course is never certain
 LESS = 0.25  # of the gap that is left: an interpolation that gains less than that is followed by a halving
-EXTREME = 1e-5  # of the range: how well an extreme is told
-NEAR_ENDS = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 1003)[1:-1])  # places in an interval, close by its ends
-MOST_STEPS = 12  # towards one extreme
 STEEP = 10.0  # times what the slope outside leads to expect: more than that across the narrowest bracket is a jump
+WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
+PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
+KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
+FAR = 1e4  # times the value, and what is usual in the scan
+GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
 
 
 def search(course: MeasureCourse) -> None:
     """Ask until it is certain where the value is met. Raises SpentError."""
-    course.scan()
-    given_up: set[tuple[float, float]] = set()
     while True:
         close_all(course)
-        i = widest(course, given_up)
+        i = widest(course)
         if i is None:
             break
         one, other = course.samples[i], course.samples[i + 1]
-        given_up.add((one.x, other.x))
+        course.given_up.add((one.x, other.x))
         if one.gap is None or other.gap is None:
             course.at(0.5 * (one.x + other.x))
+        elif (x := place_of_peak(course, i)) is not None:
+            course.look(x)
         else:
             course.look(place_between(one, other, course.between(i)))
 
@@ -54,23 +57,31 @@ def crossed(course: MeasureCourse) -> Iterator[int]:
             yield i
 
 
-def widest(course: MeasureCourse, given_up: set[tuple[float, float]]) -> int | None:
+def widest(course: MeasureCourse) -> int | None:
     """The widest two neighbours between which it is not certain what happens; None: there are none."""
-    found = [
-        (other.x - one.x, -i)
-        for i, one, other in course.pairs()
-        if (one.x, other.x) not in given_up and unsure(course, i)
-    ]
-    return -max(found)[1] if found else None
+    ends = ends_of_course(course)
+    pairs = [(other.x - one.x, -i) for i, one, other in course.pairs() if (one.x, other.x) not in course.given_up]
+    for _, i in sorted(pairs, reverse=True):
+        around = (*(sample.x for sample in course.samples[max(-i - 2, 0) : 4 - i]), course.distrust, len(ends))
+        if around in course.certain:
+            continue
+        if unsure(course, -i, ends):
+            return -i
+        course.certain.add(around)
+    return None
 
 
-def unsure(course: MeasureCourse, i: int) -> bool:
-    """Whether a place between two neighbours is to be asked."""
+def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
+    """Whether a place between two neighbours is to be asked; ends: ends_of_course."""
     one, other = course.samples[i], course.samples[i + 1]
     width = other.x - one.x
     if one.gap is None or other.gap is None:
         return (one.gap is None) != (other.gap is None) and width > END_OF_SOLVED * course.spacing
-    if course.parted(i) or width <= 2.0 * course.finest or near_jump(course, one, other):
+    if course.parted(i) or width <= 2.0 * course.finest:
+        return False
+    if place_of_peak(course, i) is not None:
+        return True
+    if near_jump(course, one, other, ends) or is_far(course, one, other):
         return False
     expected = course.between(i)
     side, error = one.side or other.side, max(one.error, other.error)
@@ -80,19 +91,50 @@ def unsure(course: MeasureCourse, i: int) -> bool:
     return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
 
 
-def near_jump(course: MeasureCourse, one: Sample, other: Sample) -> bool:
-    """Whether the course jumps right beside two neighbours: towards a pole it is never certain."""
-    margin = END_OF_SOLVED * course.spacing
-    return any(low - margin <= one.x and other.x <= high + margin for low, high in course.jumps)
+def ends_of_course(course: MeasureCourse) -> list[tuple[float, float]]:
+    """The neighbours between which the course jumps, is upright, or ends."""
+    ends = [(a.x, b.x) for _, a, b in course.pairs() if (a.gap is None) != (b.gap is None)]
+    return [*course.jumps, *course.steep, *ends]
+
+
+def near_jump(course: MeasureCourse, one: Sample, other: Sample, ends: list[tuple[float, float]]) -> bool:
+    """Whether the course jumps or ends right beside two neighbours: towards a pole it is never certain."""
+    margin = NEAR_JUMP * course.spacing
+    return any(low - margin <= one.x and other.x <= high + margin for low, high in ends)
+
+
+def is_far(course: MeasureCourse, one: Sample, other: Sample) -> bool:
+    """Whether two neighbours lie so far off, beside a pole, that the course does not come back between them."""
+    if not one.side or one.side != other.side:
+        return False
+    least = min(abs((sample.gap or 0.0) + course.value) for sample in (one, other))
+    return least > FAR * max(course.usual, abs(course.value))
+
+
+def place_of_peak(course: MeasureCourse, i: int) -> float | None:
+    """Where a peak or a pole between two neighbours may reach the value; None: nothing tells of one that does."""
+    one, other = course.samples[i], course.samples[i + 1]
+    peak = course.peak(i)
+    if peak is None or not one.side or one.side != other.side:
+        return None
+    if np.isinf(peak.size) and (one.gap + course.value) * (other.gap + course.value) < 0.0:  # type: ignore[operator]
+        return place_inside(one, other, peak.place)
+    largest = (
+        max((sample.gap or 0.0) + course.value for sample in (one, other))
+        if course.value > 0.0
+        else min((sample.gap or 0.0) + course.value for sample in (one, other))
+    )
+    if largest * course.value <= 0.0 or abs(largest) >= abs(course.value):
+        return None
+    reached = abs(largest) + GROWTH * (peak.size - abs(largest))
+    return place_inside(one, other, peak.place) if reached >= abs(course.value) else None
 
 
 def place_between(one: Sample, other: Sample, expected: Between) -> float:
     """Where to ask between two neighbours: where the course may come nearest to the value, else in the middle."""
     if not one.side or one.side != other.side:
         return 0.5 * (one.x + other.x)
-    x = float(expected.places[np.argmin(one.side * expected.gaps - expected.off)])
-    inward = INWARD * (other.x - one.x)
-    return min(max(x, one.x + inward), other.x - inward)
+    return place_inside(one, other, float(expected.places[np.argmin(one.side * expected.gaps - expected.off)]))
 
 
 def close_in(course: MeasureCourse, i: int) -> None:
@@ -116,7 +158,8 @@ def close_in(course: MeasureCourse, i: int) -> None:
             return
         failed = 0 if abs(found.gap) < LESS * best else failed + 1
         one, other = (found, other) if found.side == one.side else (one, found)
-    (course.steep if is_steep(course, one, other) else course.jumps).add((one.x, other.x))
+    is_jump = not is_steep(course, one, other) and keeps_its_size(course, one, other)
+    (course.jumps if is_jump else course.steep).add((one.x, other.x))
 
 
 def beyond(course: MeasureCourse, one: Sample, other: Sample) -> float:
@@ -139,6 +182,33 @@ def is_steep(course: MeasureCourse, one: Sample, other: Sample) -> bool:
     through = max(abs((other.gap or 0.0) - (one.gap or 0.0)) - errors, 0.0) / (other.x - one.x)
     slopes = [((far.gap or 0.0) - (near.gap or 0.0)) / (far.x - near.x) * (other.side or 0) for near, far in outside]
     return through == 0.0 or (bool(slopes) and min(slopes) > 0.0 and through <= STEEP * max(slopes))
+
+
+def keeps_its_size(course: MeasureCourse, one: Sample, other: Sample) -> bool:
+    """Whether the course changes as much across the narrowest bracket as across one a thousand times wider.
+
+    A jump does, and a pole changes by more; what is only upright there, as a root of x - c, changes by less.
+    """
+    reach = 0.5 * WIDER * (other.x - one.x)
+    before, behind = outside(course, one, -1, reach), outside(course, other, 1, reach)
+    if behind.x - before.x < PROVES * (other.x - one.x):
+        return False
+    across = abs((other.gap or 0.0) - (one.gap or 0.0)) + one.error + other.error
+    return across >= KEPT * abs((behind.gap or 0.0) - (before.gap or 0.0))
+
+
+def outside(course: MeasureCourse, end: Sample, way: int, reach: float) -> Sample:
+    """A sample about so far outside of another one, as far as the course goes on there. Raises SpentError."""
+    k, best = course.samples.index(end), end
+    while 0 <= k + way < len(course.samples) and not course.parted(k + min(way, 0)):
+        k += way
+        if abs(course.samples[k].x - end.x) > reach:
+            found = course.at(end.x + way * reach)
+            return found if found.gap is not None else best
+        best = course.samples[k]
+        if abs(best.x - end.x) >= 0.5 * reach:
+            return best
+    return best
 
 
 def root(course: MeasureCourse, one: Sample, other: Sample) -> float:
@@ -168,30 +238,3 @@ def stretch_of(course: MeasureCourse, one: Sample) -> list[Sample]:
             found = []
         found.append(sample)
     return found
-
-
-def refine_extreme(course: MeasureCourse, way: int) -> None:
-    """Ask where the least (way -1) or the greatest (1) of the course may be, until no more is to be expected."""
-    for _ in range(MOST_STEPS):
-        known = [sample for sample in course.samples if sample.gap is not None]
-        best = max(known, key=lambda sample: way * (sample.gap or 0.0))
-        gain, place = max((expected_gain(course, i, best, way) for i in beside(course, best)), default=(0.0, 0.0))
-        if gain <= max(best.error, EXTREME * course.range):
-            return
-        course.look(place)
-
-
-def beside(course: MeasureCourse, best: Sample) -> Iterator[int]:
-    """The neighbours of which a sample is one, where the course goes on between them."""
-    for i, one, other in course.pairs():
-        if best in (one, other) and not course.parted(i) and other.x - one.x > 2.0 * course.finest:
-            yield i
-
-
-def expected_gain(course: MeasureCourse, i: int, best: Sample, way: int) -> tuple[float, float]:
-    """By how much g may pass its best between two neighbours at most, and where."""
-    one, other = course.samples[i], course.samples[i + 1]
-    expected = course.between(i, one.x + NEAR_ENDS * (other.x - one.x))
-    most = way * expected.gaps + expected.off
-    k = int(np.argmax(most))
-    return float(most[k] - way * (best.gap or 0.0)), float(expected.places[k])

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from heuncli.commands.find.course import MeasureCourse, Sample, SpentError
+from heuncli.commands.find.edges import close_edges
 from heuncli.commands.find.places import doubtful, meetings, met, unsolved
-from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, Touch
-from heuncli.commands.find.search import close_all, refine_extreme, search
+from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, OpenBracket, Touch
+from heuncli.commands.find.search import close_all, search
+from heuncli.commands.find.touches import find_touches
 from heuncli.variants.conditions import Sign
+from heuncli.variants.course import MeasureCourse, Sample, SpentError
+from heuncli.variants.course_extremes import extreme, refine_extreme
 
 HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
 
@@ -17,35 +20,61 @@ SIDES: dict[Sign, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the 
 
 
 def look(
-    ask: Callable[[float], Sample], low: float, high: float, relation: Sign, *, count: int, most: int
+    ask: Callable[[float], Sample],
+    low: float,
+    high: float,
+    relation: Sign,
+    *,
+    count: int,
+    most: int,
+    value: float = 0.0,
 ) -> CourseFindings:
-    """What is found between low and high; count: places of the scan, most: that may be asked in all."""
-    course = MeasureCourse(ask, low, high, count, most)
+    """What is found between low and high.
+
+    count: places of the scan, most: that may be asked in all; value: what the measure is less its gap.
+    """
+    course = MeasureCourse(ask, low, high, count, most, value)
     complete, refined = True, False
     try:
-        search(course)
-        for _ in range(HALVINGS):
-            for place in list(doubtful(course)):
-                course.at(place)
-            close_all(course)  # a group that was one may have come apart
-        if not any(meetings(course)) and any(sample.gap is not None for sample in course.samples):
-            for way in (-1, 1):
-                refine_extreme(course, way)
-            refined = True
+        course.scan()
+        looked_at, enclosed = 0, -1
+        while len(course.samples) > looked_at:  # whatever was found is looked at like the scan
+            looked_at = len(course.samples)
+            course.withhold_isolated()
+            search(course)
+            if (met_at := sum(1 for _ in meetings(course))) != enclosed:  # where more is met than was enclosed before
+                enclose(course)
+                enclosed = met_at
+            find_touches(course)
+            if not any(meetings(course)) and extreme(course, 1) is not None:
+                refined = True
+                for way in (-1, 1):
+                    refine_extreme(course, way)
+            if len(course.samples) == looked_at:
+                close_edges(course)
     except SpentError:
         complete = False
+    course.withhold_isolated()
     found = list(meetings(course))
-    known = [sample for sample in course.samples if sample.gap is not None]
     return CourseFindings(
         crossings=tuple(each for each in found if isinstance(each, Crossing)),
         touches=tuple(each for each in found if isinstance(each, Touch)),
         jumps=tuple(each for each in found if isinstance(each, CourseJump)),
+        brackets=tuple(each for each in found if isinstance(each, OpenBracket)),
         unsolved=tuple(unsolved(course)),
         met=tuple(met(course, SIDES[relation], equal="=" in relation)) if SIDES[relation] else (),
-        least=min(known, key=lambda sample: sample.gap or 0.0, default=None),
-        greatest=max(known, key=lambda sample: sample.gap or 0.0, default=None),
+        least=extreme(course, -1),
+        greatest=extreme(course, 1),
         refined=refined,
         samples=tuple(course.samples),
         spacing=course.spacing,
         complete=complete,
     )
+
+
+def enclose(course: MeasureCourse) -> None:
+    """Enclose crossings whose slope is not well known. Raises SpentError."""
+    for _ in range(HALVINGS):
+        for place in list(doubtful(course)):
+            course.at(place)
+        close_all(course)  # a group that was one may have come apart

@@ -144,27 +144,47 @@ def _contribution(one: Contribution, size: float) -> tuple[str, ...]:
     lead = (one.name, f"{one.spread:.6g}", one.unit)
     if one.size is None:
         return (*lead, "", "", *ends, "not known")
-    note = ""
-    if one.bent:
-        linear = "no derivative" if one.linear is None else f"the derivative says ± {one.linear * size:.4g}"
-        note = f"by the variants at its ends; {linear}"
-    return (*lead, with_digits(one.size * size, one.error * size), rough(one.error * size), *ends, note)
+    return (*lead, with_digits(one.size * size, one.error * size), rough(one.error * size), *ends,
+            "searched" if one.bent else "")  # fmt: skip
+
+
+def _searches(total: SpreadSum, size: float) -> Iterator[str]:
+    """What was found within spreads that are not linear, and what cannot be solved of them."""
+    for one in total.contributions:
+        if one.bent and one.least is not None and one.greatest is not None:
+            linear = (
+                "there is no derivative" if one.linear is None else f"the derivative says ± {one.linear * size:.4g}"
+            )
+            ends = " to ".join(
+                f"{change * size:+.4g} (at {x:+.4g} {one.unit}".rstrip() + ")"
+                for x, change in (one.least, one.greatest)
+            )
+            yield f"{one.name} is not linear over its spread: {ends}, by {count(one.variants, 'variant')}; {linear}"
+        if one.why[0]:
+            yield f"{one.name}: a part of its spread cannot be solved: {one.why[1]} [{one.why[0]}]"
 
 
 def _sums(total: SpreadSum, base: NoisyValue, unit: str, size: float) -> Iterator[str]:
     """Worst case, root of squares, and what the variants at the corners say of it."""
+    yield from _searches(total, size)
     if total.worst is None or total.square is None:
         yield "worst case: not known, since a contribution is not"
         return
-    for word, (value, error) in (("worst case", total.worst), ("root sum square", total.square)):
-        yield f"{word}: ± {_with_unit(with_digits(value * size, error * size), unit)} (error {rough(error * size)})"
+    partly = ", of what can be solved of the spreads" if any(one.why[0] for one in total.contributions) else ""
+    shown_by = ", shown by a variant of several numbers" if total.by_variant else ""
+    found_by = ", searched inside the spreads" if any(one.bent for one in total.contributions) else ""
+    words = (("worst case", total.worst, shown_by + found_by + partly), ("root sum square", total.square, ""))
+    for word, (value, error), how in words:
+        text = _with_unit(with_digits(value * size, error * size), unit)
+        yield f"{word}: ± {text} (error {rough(error * size)}){how}"
     low, high = total.corners
     if base.value is None or low.value is None or high.value is None:
         why = next((end.why for end in total.corners if end.value is None), ("", ""))
         yield f"the variants with all numbers at their ends: {why[1]} [{why[0]}]"
         return
     changes = low.value - base.value, high.value - base.value
-    text = f"the variants with all numbers at their ends: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
+    where = "where each does most" if any(one.bent for one in total.contributions) else "at their ends"
+    text = f"the variants with all numbers {where}: {changes[0] * size:+.6g} and {changes[1] * size:+.6g}"
     off = max(abs(abs(change) - total.worst[0]) for change in changes)
     if off > LINEAR * total.worst[0] + total.worst[1] + low.error + high.error:
         text += ": the spreads are too large for the sum"
@@ -206,8 +226,15 @@ def _spread_block(total: SpreadSum) -> dict[str, Any]:
         "worst": total.worst[0] if total.worst else None, "worst_error": total.worst[1] if total.worst else None,
         "root_sum_square": total.square[0] if total.square else None,
         "root_sum_square_error": total.square[1] if total.square else None,
-        "corners": [low.value, high.value],
-        "contributions": [{**one._asdict(), "by_variants": one.bent} for one in total.contributions],
+        "corners": [low.value, high.value], "worst_by_variant": total.by_variant,
+        "largest": total.largest[0] if total.largest else None,
+        "contributions": [
+            {
+                **{key: value for key, value in one._asdict().items() if key not in ("bent", "why")},
+                "by_variants": one.bent, "code": one.why[0] or None, "reason": one.why[1] or None,
+            }
+            for one in total.contributions
+        ],
     }  # fmt: skip
 
 

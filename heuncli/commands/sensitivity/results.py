@@ -35,10 +35,13 @@ class NoisyDerivative(NamedTuple):
 
 
 class Contribution(NamedTuple):
-    """What a spread of one number makes of a measure: by the derivative, and by the variants at its ends.
+    """What a spread of one number makes of a measure: by the derivative, and by the variants within it.
 
-    size: what it is counted with, within an error: by the derivative where the variants agree with it, else the larger
-    of what these differ by. below, above: what the measure changes by there; None where there is none.
+    size: what it is counted with, within an error: the largest change that is known, None where that is not known.
+    linear: what the derivative says; below, above: what the measure changes by at the ends; None where there is none.
+    bent: the variants do not lie on the line of the derivative, and the spread was searched with so many variants, for
+    the distances from the number and the changes of the least and the greatest; why: a code and a sentence where a part
+    of the spread cannot be solved.
     """
 
     name: str
@@ -49,20 +52,24 @@ class Contribution(NamedTuple):
     linear: float | None
     below: float | None
     above: float | None
-
-    @property
-    def bent(self) -> bool:
-        """Whether the variants at the ends do not agree with the derivative."""
-        return self.size is not None and self.size != self.linear
+    bent: bool = False
+    least: tuple[float, float] | None = None
+    greatest: tuple[float, float] | None = None
+    variants: int = 0
+    why: tuple[str, str] = ("", "")
 
 
 class SpreadSum(NamedTuple):
     """What all spreads together make of a measure, each way: worst case and root of the sum of squares, with errors.
 
-    corners: the measure where all numbers are at the ends that lower it, and that raise it. None: not known.
+    corners: the measure where each number is where it lowers it most, and where it raises it most. by_variant: the
+    worst case is what a variant showed, since that is more than the sum. largest: the largest change that a variant of
+    several numbers showed, and its error. None: not known.
     """
 
     contributions: tuple[Contribution, ...]
     worst: tuple[float, float] | None
     square: tuple[float, float] | None
     corners: tuple[NoisyValue, NoisyValue]
+    by_variant: bool = False
+    largest: tuple[float, float] | None = None

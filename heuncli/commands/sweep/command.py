@@ -32,7 +32,7 @@ from heuncli.telling import measure
 from heuncli.variants.asking import CASE, Asker, Recipe, varies_cases
 from heuncli.variants.axes import HINT, AxisError, Drawn, ParameterAxis
 from heuncli.variants.keys import VariantKeys
-from heuncli.variants.plans import Plan, plan_of
+from heuncli.variants.plans import Draws, Plan, plan_of
 from heuncli.variants.stated import unit_of
 from heuncli.version import VERSION
 
@@ -52,7 +52,7 @@ def main(request: SweepRequest) -> int:
     plan = plan_by(given, request)
     asker = asker_of(recipe, plan)
     measure.known(recipe.measures, asker.spec, [partial(_require_known, given, asker, recipe)])
-    plan = with_cases(plan, asker)
+    plan = with_cases(plan, given, request, asker)
     _require_files(request, path)  # the tables of the spec, too
     for line in warnings_of(given, asker) if not request.quiet else ():
         say(f"warning: {line}")
@@ -105,11 +105,21 @@ def given_by(request: SweepRequest, words: Sequence[str]) -> list[GivenAxis]:
 
 
 def plan_by(given: Sequence[GivenAxis], request: SweepRequest) -> Plan:
-    """The variants. Raises AxisError."""
+    """The variants, without the load cases where all are varied: which there are the spec tells. Raises AxisError."""
+    draws = drawn([one.axis for one in given if isinstance(one.axis, Drawn)], request)
+    return plan_among([one for one in given if not is_every_case(one)], request, draws)
+
+
+def plan_among(given: Sequence[GivenAxis], request: SweepRequest, draws: Draws | None) -> Plan:
+    """The plan of some axes and columns, and of what is drawn. Raises AxisError."""
     columns = [one.axis for one in given if one.column is not None and isinstance(one.axis, ParameterAxis)]
     axes = [one.axis for one in given if one.column is None and not isinstance(one.axis, Drawn)]
-    draws = drawn([one.axis for one in given if isinstance(one.axis, Drawn)], request)
     return plan_of(axes, together=request.zip, draws=draws, columns=columns)
+
+
+def is_every_case(one: GivenAxis) -> bool:
+    """Whether an axis is the word `case=all`."""
+    return one.name == CASE and one.column is None and [*one.texts] == [ALL_CASES]
 
 
 def asker_of(recipe: Recipe, plan: Plan) -> Asker:
@@ -132,14 +142,13 @@ def _require_known(given: Sequence[GivenAxis], asker: Asker, recipe: Recipe) -> 
         raise SpecError(*problems)
 
 
-def with_cases(plan: Plan, asker: Asker) -> Plan:
-    """The plan with `case=all` as every load case."""
-    if not varies_cases(asker.spec):
+def with_cases(plan: Plan, given: Sequence[GivenAxis], request: SweepRequest, asker: Asker) -> Plan:
+    """The plan with `case=all` as every load case. Raises AxisError."""
+    if not any(map(is_every_case, given)):
         return plan
-    every = ParameterAxis(CASE, tuple(asker.spec.cases))
-    is_every = [axis.name == CASE and list(axis.texts) == [ALL_CASES] for axis in plan.axes]
-    axes = [every if all_ else axis for axis, all_ in zip(plan.axes, is_every, strict=True)]
-    return plan_of(axes, together=plan.together, draws=plan.draws, columns=plan.columns)
+    every = ParameterAxis(CASE, tuple(asker.spec.cases)) if varies_cases(asker.spec) else None
+    spelt = [one._replace(axis=every) if every is not None and is_every_case(one) else one for one in given]
+    return plan_among(spelt, request, plan.draws)
 
 
 def head_of(request: SweepRequest, asker: Asker, plan: Plan) -> SweepHead:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 from collections.abc import Iterable
 
 from heuncli.cli.output import say
 from heuncli.named_tuples import NamedTuple
 from heuncli.sweeps.rows import SweepHead, SweptRow
+from heuncli.variants.once import kind_of_warning
 
-FIGURES = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?")
 MOST = 20  # kinds of warnings that are told
 
 
@@ -44,7 +43,7 @@ def noticed_in(head: SweepHead, rows: Iterable[SweptRow]) -> Noticed:
         if row.answer.code:
             codes[row.answer.code] += 1
         for text in row.answer.warnings:
-            kind = FIGURES.sub("#", text)
+            kind = kind_of_warning(text)
             if kind in warnings or len(warnings) < MOST:
                 first, so_far = warnings.get(kind, (text, 0))
                 warnings[kind] = first, so_far + 1

@@ -84,6 +84,9 @@ def _of_one(
     whole = np.full(len(plan.draws.values), np.nan)
     whole[places] = values
     samples = whole.reshape(-1, each)
-    samples = samples[np.isfinite(samples).all(axis=1)]
-    indices = None if found is None or made.flat else sobol_indices(samples)
+    known_ones = np.flatnonzero(np.isfinite(samples).all(axis=1))
+    samples = samples[known_ones]
+    repetitions = plan.draws.repetitions
+    of_plans = known_ones % repetitions if repetitions > 1 else None
+    indices = None if found is None or made.flat else sobol_indices(samples, of_plans)
     return made._replace(indices=indices, samples=len(samples))

@@ -13,6 +13,7 @@ from heuncli.report.text_table import TextColumn, TextTable
 from heuncli.sweeps.columns import parameters_of
 from heuncli.sweeps.rows import SweepHead
 from heuncli.variants.axes import Drawn
+from heuncli.variants.indices import LEAST_BOUNDED
 from heuncli.variants.sampling import SURE, Estimated
 
 MOST_BLOCKS = 12  # combinations and measures that are shown without --all
@@ -25,6 +26,7 @@ SPOILT = "{}: the runs' own errors, up to {}, are not small beside these interva
 NOT_SHOWN = 0.1  # share of an interval that the runs' own errors may have untold
 NO_INDICES = "{}: no Sobol indices: "
 FLAT = "it varies by no more than the errors of its runs"
+UNBOUNDED = "{}: no intervals of {} samples: they take " + f"{LEAST_BOUNDED} or more (--samples {LEAST_BOUNDED})"
 FEW = "all {} variants of a sample are known of {} samples only"
 
 
@@ -110,5 +112,7 @@ def _indices(head: SweepHead, found: Sequence[MeasureStatistics], laws: Sequence
             continue
         rows.append(f"{label_of(head, one)}: {count(one.samples, 'sample')}")
         for law, of in zip(laws, one.indices, strict=True):
-            rows.append((law.name, *(f"{end:.3f}" for estimated in of for end in estimated if end is not None)))
+            rows.append((law.name, *("-" if end is None else f"{end:.3f}" for estimated in of for end in estimated)))
+        if one.samples < LEAST_BOUNDED:
+            notes.append(UNBOUNDED.format(label_of(head, one), one.samples))
     return TextTable(INDICES, columns, tuple(rows), tuple(notes))

@@ -5,13 +5,17 @@
 Between two neighbours g is taken for the cubic through them and one more on either side. How far that may be off is
 seen from the parabolas that leave one of the four out, from the corner at which the lines through either two would meet
 (a measure such as the largest of several bends there), and from how far off it was wherever it was asked since.
+
+No polynomial follows a resonance or a pole. There 1/measure^2 is smooth: the parabola through its three values about a
+largest magnitude says how far that may grow between them, also beyond all bounds.
 """
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, insort
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import groupby, pairwise
 
 import numpy as np
 
@@ -27,18 +31,26 @@ UNEVEN = 0.25  # of the spacing: by so much places of the scan are shifted at mo
 GOLDEN = 0.5 * (5.0**0.5 - 1.0)
 DISTRUST = 1.25
 MOST_DISTRUST = 16.0
+GRADED = 4.0  # times: magnitudes of neighbours that run through more are followed by their logarithms
+LARGEST_LOG = 690.0  # of a magnitude that is a number
+ISOLATED = 1e-3  # of the spacing: singular poses over less than that are places, not a part of the course
+SINGULAR = "the run passes a singular pose there and not beside it: its number is no neighbour of the others"
+BEYOND_POLE = 0.5  # of an interval: by so much the pole that one side foretells may lie outside of it
 
 
 class Sample(NamedTuple):
     """What is known at a place: how far the measure lies above the value, and its error.
 
-    gap: None where there is none, and why stands for a reason: its code and a sentence.
+    gap: None where there is none, and why stands for a reason: its code and a sentence. singular: its run passes a
+    singular pose; withheld: what its gap is, where it is not taken for a neighbour of the others because of that.
     """
 
     x: float
     gap: float | None
     error: float = 0.0
     why: tuple[str, str] = ("", "")
+    singular: bool = False
+    withheld: float | None = None
 
     @property
     def side(self) -> int | None:
@@ -57,6 +69,13 @@ class Between(NamedTuple):
     noise: float
 
 
+class Peak(NamedTuple):
+    """Where the magnitude of the measure may be greatest between two neighbours, and how large; inf: a pole."""
+
+    place: float
+    size: float
+
+
 class SpentError(Exception):
     """As many places have been asked as may be."""
 
@@ -65,11 +84,21 @@ class MeasureCourse:
     """What is known of g over an interval; asks for more.
 
     jumps: neighbours between which it jumps, which part it like what cannot be solved; steep: between which it crosses,
-    nearer together than places are told apart.
+    nearer together than places are told apart. given_up: neighbours between which a place was asked for already;
+    certain: places among which it is known that none is to be asked for, and the distrust at which that was found.
     """
 
-    def __init__(self, ask: Callable[[float], Sample], low: float, high: float, count: int, most: int) -> None:
-        """ask: what is known at a place; count: places of the scan, evenly spaced; most: of all that may be asked."""
+    def __init__(
+        self, ask: Callable[[float], Sample], low: float, high: float, count: int, most: int, value: float = 0.0
+    ) -> None:
+        """ask: what is known at a place; count: places of the scan, evenly spaced; most: of all that may be asked.
+
+        value: what g is counted from, the measure less g.
+        """
+        self.value = value
+        self.given_up: set[tuple[float, float]] = set()
+        self.usual = math.inf  # magnitude of the measure over the scan
+        self.certain: set[tuple[float, ...]] = set()
         self._ask, self._most = ask, most
         self.low, self.high = low, high
         self.finest = max(1e-10 * (high - low), 4.0 * EPS * max(abs(low), abs(high)))
@@ -84,6 +113,9 @@ class MeasureCourse:
         """Look at the places of the scan: the ends first, so that a scan cut short has them."""
         for x in (self._scan[0], self._scan[-1], *self._scan[1:-1]):
             self.at(x)
+        self.usual = float(
+            np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples])
+        )
 
     def at(self, x: float) -> Sample:
         """What is known at a place. Raises SpentError."""
@@ -118,6 +150,72 @@ class MeasureCourse:
         one, other = self.samples[i], self.samples[i + 1]
         return one.gap is None or other.gap is None or (one.x, other.x) in self.jumps
 
+    def peak(self, i: int) -> Peak | None:
+        """How far the magnitude of the measure may grow between a sample and the next; None: no sign of a peak."""
+        if self.parted(i):
+            return None
+        one, other = self.samples[i], self.samples[i + 1]
+        if self._measure(i) * self._measure(i + 1) < 0.0:
+            place = self._pole(i)
+            return None if place is None else Peak(place, math.inf)
+        found = [peak for k in (i, i + 1) if (peak := self._top(k)) is not None]
+        inside = [peak for peak in found if one.x < peak.place < other.x]
+        return max(inside, key=lambda peak: peak.size, default=None)
+
+    def _measure(self, i: int) -> float:
+        return _gap(self.samples[i]) + self.value
+
+    def _top(self, k: int) -> Peak | None:
+        """The top of 1/measure^2 through a sample that is the largest of three."""
+        if not 0 < k < len(self.samples) - 1 or self.parted(k - 1) or self.parted(k):
+            return None
+        x = [self.samples[j].x for j in (k - 1, k, k + 1)]
+        m = [self._measure(j) for j in (k - 1, k, k + 1)]
+        noise = NOISE * max(self.samples[j].error for j in (k - 1, k, k + 1))
+        if m[0] * m[1] <= 0.0 or m[1] * m[2] <= 0.0 or abs(m[1]) - max(abs(m[0]), abs(m[2])) <= noise:
+            return None
+        y = [(m[1] / each) ** 2 for each in m]  # of the largest's
+        before, after = (y[1] - y[0]) / (x[1] - x[0]), (y[2] - y[1]) / (x[2] - x[1])
+        bend = (after - before) / (x[2] - x[0])
+        middle = before + bend * (x[1] - x[0])  # the slope at the sample
+        place = x[1] - 0.5 * middle / bend
+        least = 1.0 - 0.25 * middle * middle / bend
+        return Peak(place, abs(m[1]) / math.sqrt(least) if least > 0.0 else math.inf)
+
+    def _pole(self, i: int) -> float | None:
+        """Where 1/measure passes 0 between neighbours of different signs, if one side foretells that."""
+        one, other = self.samples[i], self.samples[i + 1]
+        width = other.x - one.x
+        a, b = 1.0 / self._measure(i), 1.0 / self._measure(i + 1)
+        foretold = False
+        for k, far in ((i, i - 1), (i + 1, i + 2)):
+            if not 0 <= far < len(self.samples) or self.parted(min(k, far)):
+                continue
+            own, outer = self._measure(k), self._measure(far)
+            if own * outer > 0.0 and abs(outer) < abs(own):
+                fall = 1.0 / abs(outer) - 1.0 / abs(own)
+                ahead = abs(self.samples[k].x - self.samples[far].x) / abs(own) / fall
+                foretold = foretold or ahead <= (1.0 + BEYOND_POLE) * width
+        if not foretold:
+            return None
+        margin = 0.25 * self.finest
+        return min(max(one.x + width * a / (a - b), one.x + margin), other.x - margin)
+
+    def withhold_isolated(self) -> None:
+        """Take no sample for a neighbour whose run passes a singular pose, where those beside it do not.
+
+        Where a wider stretch of them is found, it is a course of its own kind, and they are neighbours again.
+        """
+        for is_singular, members in groupby(range(len(self.samples)), key=lambda i: self.samples[i].singular):
+            places = list(members)
+            if not is_singular:
+                continue
+            beside = [k for k in (places[0] - 1, places[-1] + 1) if 0 <= k < len(self.samples)]
+            wide = self.samples[places[-1]].x - self.samples[places[0]].x
+            alone = wide <= ISOLATED * self.spacing and any(self.samples[k].gap is not None for k in beside)
+            for k in places:
+                self.samples[k] = withheld(self.samples[k]) if alone else restored(self.samples[k])
+
     @property
     def range(self) -> float:
         """How far apart the least and the greatest lie that were found."""
@@ -132,18 +230,39 @@ class MeasureCourse:
         x = one.x + GRID * (other.x - one.x) if places is None else places
         if left and right and places is None:
             x = np.sort(np.append(x, meeting(left[0], one, other, right[0])))
-        expected = polynomial(whole, x)
         noise = NOISE * max(sample.error for sample in whole)
         if len(whole) == 2:
+            expected = polynomial(whole, x)
             return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))), noise)
         parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
-        others = [polynomial(part, x) for part in parts]
+        models = [[polynomial(part, x) for part in (whole, *parts)]]
+        if self._is_graded(whole, bool(left and right)):
+            models.append([self._by_logarithm(part, x) for part in (whole, *parts)])
+        expected, *others = min(models, key=lambda model: float(np.max(np.abs(np.array(model[1:]) - model[0]))))
         if left and right:
             others.append(corner([left[0], one], [other, right[0]], x, expected))
         off = np.maximum(np.max([np.abs(each - expected) for each in others], axis=0) - noise, 0.0)
         known = [_gap(sample) for sample in whole]
         steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
         return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
+
+    def _is_graded(self, samples: list[Sample], on_both_sides: bool) -> bool:
+        """Whether the measure runs through magnitudes, as towards a pole, and may be followed by its logarithm.
+
+        Not where it may touch a value at 0 or behind it, which no logarithm reaches.
+        """
+        m = [_gap(sample) + self.value for sample in samples]
+        if min(m) <= 0.0 <= max(m) or max(map(abs, m)) < GRADED * min(map(abs, m)):
+            return False
+        steps = [abs(b) - abs(a) for a, b in pairwise(m)]
+        return m[0] * self.value > 0.0 or (on_both_sides and (min(steps) > 0.0 or max(steps) < 0.0))
+
+    def _by_logarithm(self, samples: list[Sample], x: Array) -> Array:
+        """The course through some samples, of which the logarithm of the measure is a polynomial."""
+        sign = math.copysign(1.0, _gap(samples[0]) + self.value)
+        logs = [sample._replace(gap=math.log(abs(_gap(sample) + self.value))) for sample in samples]
+        found: Array = sign * np.exp(np.minimum(polynomial(logs, x), LARGEST_LOG)) - self.value
+        return found
 
     def beside(self, i: int, way: int) -> list[Sample]:
         """Up to two samples of the stretch before a sample (way -1) or behind its next (1); the nearest first."""
@@ -157,6 +276,18 @@ class MeasureCourse:
                 found.append(self.samples[k])
                 from_ = self.samples[k].x
         return found
+
+
+def withheld(sample: Sample) -> Sample:
+    """A sample whose gap is that of a singular pose alone."""
+    if sample.gap is None:
+        return sample
+    return sample._replace(gap=None, withheld=sample.gap, why=("singular-pose", SINGULAR))
+
+
+def restored(sample: Sample) -> Sample:
+    """A sample with its gap, if it was withheld."""
+    return sample if sample.withheld is None else sample._replace(gap=sample.withheld, withheld=None, why=("", ""))
 
 
 def uneven(low: float, high: float, count: int) -> list[float]:
