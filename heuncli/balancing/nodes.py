@@ -193,6 +193,15 @@ class PieceNodes:
         ])  # fmt: skip
         return np.asarray(every[np.append(True, np.diff(every) > 0.0)])
 
+    def halved(self, times: int) -> PieceNodes:
+        """The nodes of as many times halved pieces."""
+        parts = 2**times
+        share = np.arange(parts) / parts
+        width = (self.ends - self.begins)[:, None]
+        begins = (self.begins[:, None] + width * share).ravel()
+        ends = np.append(begins[1:], self.ends[-1])
+        return PieceNodes(self.begin, self.turns, self.sense, begins, ends, np.repeat(self.sizes, parts))
+
     def coefficients(self, values: Array) -> Array:
         """Those of Legendre's polynomials of values (n, ...) on each piece, (p, MOST, columns)."""
         flat = values.reshape(len(values), -1)

@@ -8,16 +8,22 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.balancing.nodes import Nodes
+from heuncli.balancing.nodes import Course, Nodes
 from heuncli.balancing.results import Residual
+from heuncli.records import replace
 from heuncli.results import Array
 from heuncli.study.search.extremes import search
 
 HIGHEST = (1.0,)
 
 
-def residuals(kinds: Mapping[str, Array], nodes: Nodes, least: Mapping[str, float]) -> dict[str, Residual]:
-    """Of each kind the sum over the bodies of values (n, bodies, c); least: what is below is rounding, or an error."""
+def residuals(
+    kinds: Mapping[str, Array], nodes: Nodes, least: Mapping[str, float], noise: Mapping[str, float]
+) -> dict[str, Residual]:
+    """Of each kind the sum over the bodies of values (n, bodies, c).
+
+    least: what is below is rounding, or an error; noise: what values are off by besides what the nodes tell.
+    """
     found = {}
     for name, values in kinds.items():
         sum_ = values.sum(axis=1)
@@ -26,7 +32,8 @@ def residuals(kinds: Mapping[str, Array], nodes: Nodes, least: Mapping[str, floa
         if largest <= max(tolerances.CANCELS * terms, least[name]):
             found[name] = Residual(0.0, 0.0, float(nodes.begin), max(largest, least[name]))
         else:
-            found[name] = of_vectors(sum_, nodes)
+            own = of_vectors(sum_, nodes)
+            found[name] = replace(own, error=own.error + noise[name])
     return found
 
 
@@ -38,9 +45,18 @@ def of_vectors(values: Array, nodes: Nodes) -> Residual:
     def squares(x: Array) -> Array:
         return np.asarray(np.sum(course(x) ** 2, axis=1)[:, None])
 
-    top = search(squares, nodes.grid, errors=np.array([error]), even=np.array([True]), sides=HIGHEST)
     rms = float(np.sqrt(nodes.weights @ np.sum(values**2, axis=1)))
-    return Residual(rms, float(np.sqrt(top.high[0])), nodes.angle(float(top.high_at[0])), error)
+    peak, at = highest(squares, nodes, error)
+    return Residual(rms, peak, at, error)
+
+
+def highest(squares: Course, nodes: Nodes, error: float) -> tuple[float, float]:
+    """The largest magnitude by its squares, (n, 1), and its angle; of what does not vary that of the first node."""
+    grid = nodes.grid
+    top = search(squares, grid, errors=np.array([error]), even=np.array([True]), sides=HIGHEST)
+    peak = math.sqrt(max(float(top.high[0]), 0.0))
+    alike = np.flatnonzero(np.sqrt(np.maximum(squares(grid)[:, 0], 0.0)) >= peak - error)
+    return peak, nodes.angle(float(grid[alike[0]] if len(alike) else top.high_at[0]))
 
 
 def of_squares(values: Array, nodes: Nodes) -> Residual:
@@ -49,6 +65,6 @@ def of_squares(values: Array, nodes: Nodes) -> Residual:
     largest = float(values.max(initial=0.0))
     off = float(nodes.errors(values[:, None]).value[0])
     error = off / math.sqrt(largest) if largest > off else math.sqrt(off)
-    top = search(course, nodes.grid, errors=np.array([error]), even=np.array([True]), sides=HIGHEST)
     rms = math.sqrt(max(float(nodes.weights @ values), 0.0))
-    return Residual(rms, math.sqrt(max(float(top.high[0]), 0.0)), nodes.angle(float(top.high_at[0])), error)
+    peak, at = highest(course, nodes, error)
+    return Residual(rms, peak, at, error)

@@ -128,7 +128,7 @@ class Flywheel:
     energy: ΔE [J], what work loads and inertia give and take at an even rate; own: the machine's mean reduced inertia,
     added, and textbook's [kg m2];
     delta: asked, present: without the wheel; even [N m]: the torque that was added so that the cycle closes; start,
-    fastest, slowest [rad/s]: with the wheel.
+    fastest, slowest [rad/s]: with the wheel. error: of each of them, by its name; notes: what is not known of the loads.
     """
 
     joint: str
@@ -143,10 +143,13 @@ class Flywheel:
     start: float
     fastest: float
     slowest: float
+    error: Mapping[str, float]
+    notes: tuple[str, ...] = ()
 
     def block(self) -> Block:
         """As the JSON has it; inertia: all that turns."""
-        return {**fields(self), "inertia": self.own + self.added}
+        own = {name: value for name, value in fields(self).items() if name != "notes"}
+        return {**own, "error": dict(self.error), "inertia": self.own + self.added}
 
 
 @record

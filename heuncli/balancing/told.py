@@ -50,7 +50,7 @@ def told(
         words=words,
         mean={name: np.einsum("n,nc->c", nodes.weights, own) for name, own in sums.items()},
         mean_error={name: float(lengths(own.order)) + more[name] for name, own in off.items()},
-        residual=residuals(values, nodes, {name: least[kind] for name, kind in kinds.items()}),
+        residual=residuals(values, nodes, {name: least[kind] for name, kind in kinds.items()}, more),
         shown=shown(found) if asked.orders is None else asked.orders,
     )  # fmt: skip
 
