@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from heuncli import tolerances
 from heuncli.balancing.choice import CyclePlan
 from heuncli.balancing.loaded import LoadedScene, loaded
 from heuncli.balancing.nodes import PieceNodes
@@ -25,10 +26,14 @@ from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery
 from heuncli.tree.prepare import PreparedScene
 
+MOMENTS = ("moment", "drive")
+FAINT = 1e-12  # of the largest square: a magnitude of a millionth, whose rounding is of no digit that is told
+
 
 def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> dict[str, OverCycle]:
     """Force, moment, drive and joints by their names, over the cycle."""
-    names = [*squares(scene.at(np.zeros(1)), plan, about)]
+    first = scene.at_first()
+    names = [*squares(first, plan, about)]
     opened: set[str] = set()
 
     def columns(recovery: Recovery) -> Array:
@@ -36,7 +41,7 @@ def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> dict[str, Ove
         opened.update(name for name, values in own.items() if np.isnan(values).any())
         return np.nan_to_num(np.stack([own[name] for name in names], axis=1))
 
-    found = scene.numbers(columns, [1] * len(names))
+    found = scene.numbers(columns, [1] * len(names), faint(columns(first), names, scene.setup.scene.layout.size))
     own = {name: over_cycle(found.values[:, k], found.nodes) for k, name in enumerate(names)}
     return own | {name: OverCycle(None, None) for name in names if name in opened}
 
@@ -54,6 +59,13 @@ def squares(recovery: Recovery, plan: CyclePlan, about: Array) -> dict[str, Arra
     for name, own in joints.items():
         found[f"joints.{name}"] = own["radial"] ** 2 if "radial" in own else np.sum(own["force"] ** 2, axis=1)
     return found
+
+
+def faint(values: Array, names: Sequence[str], size: float) -> list[float]:
+    """What of squares (n, m) is none: of magnitudes a millionth of the largest force, or of that by the size [m]."""
+    force = max(float(values[:, k].max()) for k, name in enumerate(names) if name not in MOMENTS)
+    moment = max(force * size**2, *(float(values[:, k].max()) for k, name in enumerate(names) if name in MOMENTS))
+    return [tolerances.ORDERS_SETTLED * FAINT * (moment if name in MOMENTS else force) for name in names]
 
 
 def over_cycle(values: Array, nodes: PieceNodes) -> OverCycle:

@@ -18,7 +18,7 @@ from heuncli import tolerances
 from heuncli.balancing.cycle import Cycle
 from heuncli.balancing.effects import mass_effects
 from heuncli.balancing.legendre import polynomials
-from heuncli.balancing.load_torque import torques
+from heuncli.balancing.load_torque import rounding_in, torques
 from heuncli.balancing.loaded import LoadedScene, Numbers
 from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
@@ -183,9 +183,11 @@ def of_wheel(scene: LoadedScene) -> Numbers:
         effects = mass_effects(Cycle(mechanism, scene.followed.cycle, recovery.states, size), np.zeros(3))
         return np.concatenate([torques(recovery), effects.eps, effects.half_slope], axis=1)
 
-    bodies = len(mechanism.bodies)
-    loads = columns(scene.at(np.zeros(1))).shape[1] - 2 * bodies
-    return scene.numbers(columns, [loads, bodies, bodies])
+    bodies, first = len(mechanism.bodies), scene.at_first()
+    effects = mass_effects(Cycle(mechanism, scene.followed.cycle, first.states, size), np.zeros(3))
+    of_inertia = tolerances.SUM_ROUNDING * effects.terms["torque"]
+    parts = [columns(first).shape[1] - 2 * bodies, bodies, bodies]
+    return scene.numbers(columns, parts, [rounding_in(first), of_inertia, of_inertia])
 
 
 def course_of(numbers: Numbers, bodies: int) -> tuple[WorkCourse, float, WorkErrors]:

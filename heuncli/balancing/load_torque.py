@@ -14,12 +14,12 @@ from heuncli.balancing.rows import CycleTurning, lengths, order_rows
 from heuncli.balancing.wanted import MOST_ORDERS, WantedOrders, left_beyond
 from heuncli.errors import SolveError
 from heuncli.kinetostatics.energy import power_of_rope
-from heuncli.mechanism.model import path_of_load
+from heuncli.mechanism.model import GROUND, path_of_load
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.compose.recovery import Recovery
-from heuncli.tolerances import ORDERS_SETTLED
+from heuncli.tolerances import ORDERS_SETTLED, SUM_ROUNDING
 from heuncli.tree.prepare import PreparedScene
 
 
@@ -65,8 +65,22 @@ def load_torque(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: tuple[
 
 def torques_of(scene: LoadedScene) -> Numbers:
     """The power of each load, and of the weight, over the cycle (n, loads + 1) [W]."""
-    count = torques(scene.at(np.zeros(1))).shape[1]
-    return scene.numbers(torques, [count])
+    first = scene.at_first()
+    return scene.numbers(torques, [torques(first).shape[1]], [rounding_in(first)])
+
+
+def rounding_in(recovery: Recovery) -> float:
+    """What of these powers is rounding: of what loads could do at most at the speeds of their points [W]."""
+    mechanism, states = recovery.setup.scene.mechanism, recovery.states
+    masses = np.array([body.mass for body in mechanism.bodies])
+    weights = masses * float(lengths(mechanism.gravity))
+    most = float((lengths(states.v_centre) @ weights).max())
+    for load in recovery.loads:
+        for end, force, moment in load.action.on_bodies():
+            if end.body != GROUND:
+                speed, turning = lengths(states.velocity(end.body, end.position)), lengths(states.omega[:, end.body])
+                most += float((lengths(force) * speed + lengths(moment) * turning).max())
+    return SUM_ROUNDING * most
 
 
 def torques(recovery: Recovery) -> Array:

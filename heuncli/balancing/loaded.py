@@ -27,6 +27,7 @@ from heuncli.study.model.setup import Setup, reduced_runner
 from heuncli.tree.prepare import PreparedScene, arranged
 
 SHORT = 1e-2  # of a turn: steps of less are taken where a load flares up
+FEW = 8
 MOST_ROUNDS = 24  # of looks for what was not seen; each finds one in every piece
 
 
@@ -51,10 +52,19 @@ class LoadedScene:
         """It at places of the cycle (n,), ascending."""
         return Recovery(self.setup, self.followed.recovered(x), False)
 
-    def numbers(self, columns: Callable[[Recovery], Array], parts: Sequence[int]) -> Numbers:
-        """Columns over the cycle, on as many pieces as tell them; parts: so many side by side that are of one kind."""
+    def at_first(self) -> Recovery:
+        """It at a few even places, by which it is told how many numbers there are, and what their terms are."""
+        return self.at(self.followed.length * np.arange(FEW) / FEW)
+
+    def numbers(
+        self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]
+    ) -> Numbers:
+        """Columns over the cycle, on as many pieces as tell them.
+
+        parts: so many side by side that are of one kind; rounding: of each kind what of its numbers is that.
+        """
         run, mechanism = self.followed, self.setup.scene.mechanism
-        resolver = Resolver(lambda x: columns(self.at(x)), run.cycle, scales_of(parts))
+        resolver = Resolver(lambda x: columns(self.at(x)), run.cycle, scales_of(parts, rounding))
         resolver.resolve(run.breaks)
         found = resolver.probed(np.union1d(run.short_steps(SHORT * run.length / run.turns), run.given_in_time()))
         values = [value for load in mechanism.loads for value in load.values]

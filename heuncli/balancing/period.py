@@ -36,6 +36,7 @@ from heuncli.study.workflow import solve
 
 CODE = "no-period"
 KINDS = ("force", "moment")
+FEW = 8  # instants by which it is told what the terms are that force and moment are sums of
 
 
 @record
@@ -80,7 +81,9 @@ class TwoPeriods:
             both = [self.effects(self.cycle, x, before) for before in (False, True)]
             return np.concatenate([own.reshape(len(x), -1) for two in both for own in sums(two).values()], axis=1)
 
-        resolver = Resolver(sample, self.cycle, scales_of([3, 3, 3, 3]))
+        terms = self.effects(self.cycle, np.linspace(0.0, self.cycle.length, FEW)).terms
+        rounding = [tolerances.SUM_ROUNDING * terms[name] for name in KINDS]
+        resolver = Resolver(sample, self.cycle, scales_of([3, 3, 3, 3], [*rounding, *rounding]))
         resolver.resolve(self.places(np.array(self.study.history.jumps)))
         resolver.probed(self.places(self.study.close_times()[0]))
         found = resolver.found()

@@ -182,14 +182,19 @@ def of_a_cycle(begin: float, turns: int, sense: float = 1.0) -> PieceNodes:
     return PieceNodes(begin, turns, sense, none, none, none.astype(int))
 
 
-def scales_of(parts: Sequence[int]) -> Callable[[Array], Array]:
-    """Scales of columns, so many side by side that are of one kind: the largest of the kind."""
+def scales_of(parts: Sequence[int], rounding: Sequence[float]) -> Callable[[Array], Array]:
+    """Scales of columns, so many side by side that are of one kind: the largest of the kind.
+
+    rounding: of each kind what of its numbers is rounding of terms that they are sums of: no tail need be smaller.
+    """
+    floors = np.array(rounding) / tolerances.ORDERS_SETTLED
 
     def scales(values: Array) -> Array:
         ends = np.cumsum(parts)
         sizes = np.abs(values).max(axis=0, initial=0.0)
         return np.concatenate([
-            np.full(n, sizes[end - n : end].max(initial=0.0)) for n, end in zip(parts, ends, strict=True)
+            np.full(n, max(float(sizes[end - n : end].max(initial=0.0)), floor))
+            for n, end, floor in zip(parts, ends, floors.tolist(), strict=True)
         ])  # fmt: skip
 
     return scales

@@ -16,6 +16,7 @@ from heuncli.records import replace
 from heuncli.results import Array
 
 BETWEEN = 0.25  # of the distance of even nodes: where steps are shorter a law bends there
+FEW = 8  # angles by which it is told what their terms are
 GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
 
 
@@ -47,11 +48,12 @@ def is_seen(followed: FollowedScene, cycle: Cycle, about: Array) -> bool:
     x = np.union1d(run.short_steps(BETWEEN * run.length / n), run.given_in_time())
     if not len(x):
         return True
-    there = columns_of(mass_effects(replace(cycle, nodes=cycle.nodes, states=followed.states(x)), about))
-    found = columns_of(mass_effects(cycle, about))
+    there = columns_of(mass_effects(replace(cycle, states=followed.states(x)), about))
+    effects = mass_effects(cycle, about)
+    found = columns_of(effects)
     places = x if followed.rate > 0.0 else run.length - x
     off = np.abs(cycle.nodes.course(found)(places) - there)
-    return bool((off <= tolerances.CANCELS * scales_of(parts_of(found))(found)).all())
+    return bool((off <= tolerances.CANCELS * scales_of(parts_of(found), rounding_in(effects))(found)).all())
 
 
 def on_pieces(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
@@ -62,8 +64,8 @@ def on_pieces(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
         cycle = Cycle(followed.scene.mechanism, run.cycle, followed.states(x), followed.scene.layout.size)
         return columns_of(mass_effects(cycle, about))
 
-    bodies = len(followed.scene.mechanism.bodies)
-    resolver = Resolver(sample, run.cycle, scales_of([3 * bodies, 6 * bodies, bodies]))
+    first = mass_effects(followed.at(followed.even(FEW)), about)
+    resolver = Resolver(sample, run.cycle, scales_of(parts_of(columns_of(first)), rounding_in(first)))
     resolver.resolve(run.breaks)
     resolver.probed(np.union1d(run.short_steps(BETWEEN * run.length / SAMPLES), run.given_in_time()))
     found = resolver.found()
@@ -80,3 +82,8 @@ def parts_of(columns: Array) -> list[int]:
     """How many of these columns are of force, moment and torque."""
     bodies = columns.shape[1] // 10
     return [3 * bodies, 6 * bodies, bodies]
+
+
+def rounding_in(effects: MassEffects) -> list[float]:
+    """What of force, moment and torque at unit rate is rounding."""
+    return [tolerances.SUM_ROUNDING * effects.terms[name] for name in ("force", "moment", "torque")]
