@@ -14,7 +14,6 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.balancing.choice import CyclePlan
 from heuncli.balancing.loaded import LoadedScene, loaded
-from heuncli.balancing.nodes import PieceNodes
 from heuncli.balancing.over_cycle import of_squares
 from heuncli.balancing.results import OverCycle
 from heuncli.kinetostatics.foundation import inertia_loads
@@ -42,8 +41,11 @@ def loads_of(scene: LoadedScene, plan: CyclePlan, about: Array) -> dict[str, Ove
         return np.nan_to_num(np.stack([own[name] for name in names], axis=1))
 
     found = scene.numbers(columns, [1] * len(names), faint(columns(first), names, scene.setup.scene.layout.size))
-    own = {name: over_cycle(found.values[:, k], found.nodes) for k, name in enumerate(names)}
-    return own | {name: OverCycle(None, None) for name in names if name in opened}
+    tops = of_squares({name: found.values[:, k] for k, name in enumerate(names)}, found.nodes)
+    return {
+        name: OverCycle(None, None) if name in opened else OverCycle(own.rms, own.peak, own.error)
+        for name, own in tops.items()
+    }
 
 
 def squares(recovery: Recovery, plan: CyclePlan, about: Array) -> dict[str, Array]:
@@ -66,12 +68,6 @@ def faint(values: Array, names: Sequence[str], size: float) -> list[float]:
     force = max(float(values[:, k].max()) for k, name in enumerate(names) if name not in MOMENTS)
     moment = max(force * size**2, *(float(values[:, k].max()) for k, name in enumerate(names) if name in MOMENTS))
     return [tolerances.ORDERS_SETTLED * FAINT * (moment if name in MOMENTS else force) for name in names]
-
-
-def over_cycle(values: Array, nodes: PieceNodes) -> OverCycle:
-    """Root of the mean square and largest of a magnitude whose squares are these, (n,)."""
-    found = of_squares(values, nodes)
-    return OverCycle(found.rms, found.peak, found.error)
 
 
 def cost(

@@ -29,7 +29,7 @@ from heuncli.spec.models import Drive
 from heuncli.study.model.setup import reduced_runner
 from heuncli.tree.prepare import PreparedScene, arranged
 
-SAMPLES, MOST_SAMPLES = 64, 1024  # even angles of a turn: at first, and at most of what is smooth
+MOST_SAMPLES = 1024  # even angles of a turn, at most of what is smooth
 DRIVE = "cycle"
 TOLD = ("path-ends", "no-value")  # codes of errors that say why a scene cannot be followed on
 
@@ -52,12 +52,12 @@ class FollowedScene:
         """Its run. Raises SolveError where the scene does not go round, or comes round elsewhere."""
         own = FollowedRun(self.scene.layout, self.runner, self.begin, self.rate, self.turns)
         try:
-            ends = own.run.states
+            run = own.run
         except (SolveError, LimitError) as error:
             if isinstance(error, LimitError) and error.problems[0].code != "step-limit":
                 raise
             raise SolveError(self.not_round(error)) from None
-        there = body_states(self.scene.layout, self.runner.recovered(own.run.times, ends))
+        there = body_states(self.scene.layout, self.runner.recovered(run.times[[0, -1]], run.states[[0, -1]]))
         require_closed(self.scene, there, self.turns)
         return own
 

@@ -28,6 +28,7 @@ from heuncli.study.search.in_time import close_to
 from heuncli.tree.layout import Layout
 
 LOCAL = 1e-9  # tolerance of a step that is followed: its instants are solved to rounding whatever it is
+SAMPLES = 64  # even angles of a turn
 MOST_IN_TIME = 100_000  # instants at which what is given in time is looked at
 
 
@@ -63,12 +64,13 @@ class FollowedRun:
 
     @cached_property
     def run(self) -> Trajectory:
-        """The run, of which its two ends are answered."""
-        return self.trajectory(np.array([0.0, self.last]))
+        """The run, answered at even places with both ends."""
+        count = SAMPLES * self.turns
+        return self.trajectory(np.arange(count + 1) / count * self.length / abs(self.rate))
 
     def recovered(self, x: Array) -> Recovered:
         """The kernel's answers at places (n,), ascending."""
-        times = np.clip(x / abs(self.rate), 0.0, self.last)
+        times = np.minimum(x / abs(self.rate), self.last)
         jumps = sorted({*self.jumps, *self.run.jumps})
         return recovered_at(self.runner, self.run, times, self.runner.resample(self.run, times), jumps)
 

@@ -1,7 +1,7 @@
 """Polynomials on [-1, 1] by the values at Gauss's nodes: coefficients, integrals, Fourier's integrals.
 
     f = sum c_n P_n,   c_n = (2n + 1)/2 sum w_j P_n(u_j) f_j,   ∫ P_n e^{-iωu} du = 2 (-i)^n j_n(ω)
-j_n: spherical Bessel functions, upwards where ω is larger than n, else downwards (Miller), else by their series.
+j_n: spherical Bessel functions, upwards where ω is larger than n, else downwards (Miller).
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ import numpy as np
 from heuncli.results import Array
 
 MOST = 16  # nodes; polynomials have as many coefficients
-SMALL = 1.0  # below, j_n is summed as a series
-TERMS = 12  # of it: 2^-12 / (12! 25!!) is none
+SMALL = 1e-5  # below, j_n is its series of two terms: the third is 1e-21; Miller's recurrence would grow too far
 NEWTON = 2  # steps from eigenvalues of Jacobi's matrix to the last digit of a node
+LEAST = 1e-150  # with which it begins
 BEYOND = 24  # orders above the last from which Miller's recurrence comes down
 
 
@@ -81,15 +81,11 @@ def spherical_bessel(x: Array) -> Array:
 
 
 def series(x: Array) -> Array:
-    """j_n by its power series, (m, MOST)."""
+    """j_n by the first two terms of its power series, (m, MOST)."""
     found = np.zeros((len(x), MOST))
-    square, power = -0.5 * x * x, np.ones_like(x)
+    power = np.ones_like(x)
     for n in range(MOST):
-        term, total = power.copy(), power.copy()
-        for k in range(1, TERMS):
-            term = term * square / (k * (2 * n + 2 * k + 1))
-            total += term
-        found[:, n] = total
+        found[:, n] = power * (1.0 - 0.5 * x * x / (2 * n + 3))
         power = power * x / (2 * n + 3)
     return found
 
@@ -108,9 +104,9 @@ def upwards(x: Array) -> Array:
 def downwards(x: Array) -> Array:
     """j_n by the recurrence from far above down, scaled to the larger of j_0 and j_1, (m, MOST)."""
     found = np.zeros((len(x), MOST))
-    above, here = np.zeros_like(x), np.full_like(x, 1e-100)
+    above, here, part = np.zeros_like(x), np.full_like(x, LEAST), 1.0 / x
     for n in range(MOST + BEYOND, 0, -1):
-        above, here = here, (2 * n + 1) / x * here - above
+        above, here = here, (2 * n + 1) * part * here - above
         if n <= MOST:
             found[:, n - 1] = here
     first = np.sin(x) / x

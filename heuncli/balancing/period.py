@@ -169,4 +169,5 @@ def difference(nodes: PieceNodes, before: Array, last: Array, terms: float) -> D
     if mean <= tolerances.SUM_ROUNDING * terms:
         return Difference(0.0, 0.0, 0.0)
     apart = float(nodes.weights @ lengths(last - before))
-    return Difference(apart / mean, 2.0 * apart, abs(of_vectors(last, nodes).peak - of_vectors(before, nodes).peak))
+    tops = of_vectors({"last": last, "before": before}, nodes)
+    return Difference(apart / mean, 2.0 * apart, abs(tops["last"].peak - tops["before"].peak))

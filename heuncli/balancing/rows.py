@@ -68,29 +68,32 @@ def order_rows(
     least: what is below is rounding of what moves, or an error; parts: of which the values are sums, told beside them.
     """
     turns, sum_ = turning.turns, values.sum(axis=1)
-    orders = wanted.of(nodes, sum_)
+    error = float(lengths(nodes.errors(sum_).order)) + wanted.noise
+    orders = wanted.of(nodes, sum_, max(least, error))
     amplitudes = nodes.amplitudes(values, orders)
     apart = {name: nodes.amplitudes(part, orders) for name, part in parts.items()}
     whole, own = amplitudes.sum(axis=1), lengths(amplitudes).sum(axis=1)
-    error = float(lengths(nodes.errors(sum_).order)) + wanted.noise
     largest = float(own.max(initial=0.0))
     rounding = max(tolerances.ORDERS_SETTLED * largest, least, error)
     terms = own + sum((lengths(part).sum(axis=1) for part in apart.values()), np.zeros_like(own))
     counts = rounding if nodes.last_order is not None else max(IN_TABLE * float(terms.max(initial=0.0)), rounding)
     last = int(orders[np.flatnonzero(terms > counts).max(initial=turns - 1)])
+    told = np.flatnonzero((orders <= last) | wanted.are_asked(orders, turns))
+    left, none = lengths(whole), np.maximum(tolerances.CANCELS * own, rounding)
+    verdicts = [verdict_of(float(left[i]), float(own[i]), largest, max(least, error)) for i in told.tolist()]
+    none[told[[verdict != "remains" for verdict in verdicts]]] = math.inf
+    a = above(whole, none[:, None])
+    sizes, angles, reach = np.abs(a), phases(a), lengths(a)
+    split_none = np.maximum(tolerances.CANCELS * terms, rounding)[:, None]
+    split = {name: above(part.sum(axis=1), split_none) for name, part in apart.items()}
+    split_told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
     rows = []
-    for i in np.flatnonzero((orders <= last) | wanted.are_asked(orders, turns)).tolist():
-        verdict = verdict_of(float(lengths(whole[i])), float(own[i]), largest, max(least, error))
-        none = max(tolerances.CANCELS * float(own[i]), rounding) if verdict == "remains" else math.inf
-        a = above(whole[i], none)
+    for i, verdict in zip(told.tolist(), verdicts, strict=True):
         row = OrderRow(
-            float(orders[i] / turns), np.abs(a), phases(a), float(lengths(a)), float(own[i]), verdict, error
-        )
-        row = in_the_plane(row, whole[i], turning, none)
-        none = max(tolerances.CANCELS * float(terms[i]), rounding)
-        split = {name: above(part[i].sum(axis=0), none) for name, part in apart.items()}
-        told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
-        rows.append(replace(row, parts=told) if told else row)
+            float(orders[i] / turns), sizes[i], angles[i], float(reach[i]), float(own[i]), verdict, error,
+            parts={name: (size[i], angle[i]) for name, (size, angle) in split_told.items()} or None,
+        )  # fmt: skip
+        rows.append(in_the_plane(row, whole[i], turning, float(none[i])))
     return tuple(rows)
 
 

@@ -7,8 +7,9 @@ import math
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.balancing.cycle import MOST_SAMPLES, SAMPLES, Cycle, FollowedScene
+from heuncli.balancing.cycle import MOST_SAMPLES, Cycle, FollowedScene
 from heuncli.balancing.effects import MassEffects, mass_effects
+from heuncli.balancing.followed import SAMPLES
 from heuncli.balancing.harmonics import tail
 from heuncli.balancing.nodes import QUARTER
 from heuncli.balancing.resolved import Resolver, scales_of

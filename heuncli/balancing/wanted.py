@@ -7,7 +7,6 @@ so that from some order on none is a ten-thousandth of the largest.
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import numpy as np
@@ -20,6 +19,7 @@ from heuncli.results import Array, Indices, Mask
 
 IN_TABLE = 1e-4  # of the largest order: smaller ones do not stand in a table unless they are asked for
 AT_FIRST = 64
+SURE = 4  # doublings of how many orders were looked at, from which on two in a row without one that counts end the look
 MOST_ORDERS, MOST_WORK = 10_000, 4_000_000  # a turn; orders times pieces
 LOOKED_AT = 33  # places of a piece by which it is told how it bends
 
@@ -31,16 +31,18 @@ class WantedOrders:
     asked: tuple[float, ...] | None = None
     noise: float = 0.0
 
-    def of(self, nodes: Nodes, values: Array) -> Indices:
-        """The orders of values (n, c) that are looked at, whole numbers a cycle, ascending, from 1 on."""
-        if nodes.last_order is not None:
-            found = np.arange(1, nodes.last_order + 1)
-        else:
+    def of(self, nodes: Nodes, values: Array, least: float) -> Indices:
+        """The orders of values (n, c) that are looked at, whole numbers a cycle, ascending, from 1 on.
+
+        least: what is below is none.
+        """
+        last = nodes.last_order
+        if last is None:
             assert isinstance(nodes, PieceNodes)
-            found = np.arange(1, last_that_counts(nodes, values) + 1)
+            last = last_that_counts(nodes, values, least)
         asked = [] if self.asked is None else [order * nodes.turns for order in self.asked]
         more = [round(k) for k in asked if abs(k - round(k)) < tolerances.SAME_VALUE]
-        return np.unique(np.concatenate([found, np.array(more, dtype=int)]))
+        return np.unique(np.concatenate([np.arange(1, last + 1), np.array(more, dtype=int)]))
 
     def are_asked(self, orders: Indices, turns: int) -> Mask:
         """Which of some orders a cycle are asked for, (m,)."""
@@ -53,17 +55,36 @@ class WantedOrders:
 ANY = WantedOrders()
 
 
-def last_that_counts(nodes: PieceNodes, values: Array) -> int:
-    """The last order a cycle of values (n, c) that may be a ten-thousandth of the largest, or the last that is told."""
+def last_that_counts(nodes: PieceNodes, values: Array, none: float) -> int:
+    """The last order a cycle of values (n, c) that is a ten-thousandth of the largest, or the last that is told.
+
+    none: what is below is none.
+    """
     most = min(MOST_ORDERS * nodes.turns, max(MOST_WORK // len(nodes.begins), AT_FIRST))
-    sizes = np.abs(nodes.amplitudes(values, np.arange(1, AT_FIRST + 1)))
-    largest = float(np.sqrt(np.sum(sizes**2, axis=1)).max())
     jumps, bends = fall(nodes, values)
-    least = IN_TABLE * largest
-    if not least > 0.0:
-        return AT_FIRST
-    root = 0.5 * (jumps + math.sqrt(jumps * jumps + 4.0 * least * bends)) / least  # of least k² - jumps k - bends = 0
-    return int(min(max(math.ceil(root * nodes.turns), AT_FIRST), most))
+    first, largest, band = 1, none, last_wave(nodes, values)
+    sizes = [np.zeros(0)]
+    while first <= most:
+        orders = np.arange(first, min(max(2 * first, AT_FIRST), most) + 1)
+        sizes.append(np.sqrt(np.sum(np.abs(nodes.amplitudes(values, orders)) ** 2, axis=1)))
+        largest = max(largest, float(sizes[-1].max()))
+        first = int(orders[-1]) + 1
+        k, least = first / nodes.turns, max(IN_TABLE * largest, none)
+        faint = [float(size.max(initial=0.0)) <= least for size in sizes[-2:]]
+        if jumps / k + bends / k**2 <= least or (len(sizes) > SURE and all(faint) and first > 2.0 * band):
+            break
+    counts = np.flatnonzero(np.concatenate(sizes) > max(IN_TABLE * largest, none))
+    return max(int(counts[-1]) + 1 if len(counts) else 0, AT_FIRST)
+
+
+def last_wave(nodes: PieceNodes, values: Array) -> float:
+    """The order a cycle of the fastest wave that the polynomials show, of those that count."""
+    own = nodes.coefficients(values)
+    width = nodes.ends - nodes.begins
+    shares = np.abs(own).max(axis=2) * (width / nodes.length)[:, None]
+    counts = shares > IN_TABLE * shares.sum(axis=0).max(initial=0.0)
+    degree = (counts * np.arange(MOST)).max(axis=1)
+    return float((degree * 2.0 / width).max()) * nodes.turns
 
 
 def left_beyond(nodes: Nodes, values: Array, order: float) -> float:
