@@ -165,7 +165,8 @@ class BalanceResults:
     """A scene's balance over a cycle; forces at `rate` [rad/s], where none is known at 1 rad/s.
 
     about (3,) [m]: where moments are taken; place: its name; orders: by quantity (force, moment, torque);
-    mean_error: what the means are off by; shown: the orders that tables show.
+    mean_error: what the means are off by; shown: the orders that tables show;
+    asked: whether these were asked for.
     """
 
     title: str
@@ -185,6 +186,7 @@ class BalanceResults:
     mean_error: Mapping[str, float]
     residual: Mapping[str, Residual]
     shown: tuple[float, ...]
+    asked: bool = False
     notes: tuple[str, ...] = ()
     counterbalance: Counterbalance | None = None
     flywheel: Flywheel | None = None

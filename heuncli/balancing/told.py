@@ -31,7 +31,7 @@ def told(
     least = {name: max(x, noise.get(name, 0.0)) for name, x in rounding_of(effects, scale).items()}
     wanted = {name: WantedOrders(asked.orders, noise.get(name, 0.0)) for name in least}
     found = all_rows(effects, turning, least, wanted)
-    words = {name: in_words(rows) for name, rows in found.items()}
+    words = {name: in_words(rows, endless=nodes.last_order is None) for name, rows in found.items()}
     if asked.orders is not None:
         found = {name: tuple(row for row in rows if is_asked(row.order, asked.orders)) for name, rows in found.items()}
     values = {
@@ -51,7 +51,7 @@ def told(
         mean={name: np.einsum("n,nc->c", nodes.weights, own) for name, own in sums.items()},
         mean_error={name: float(lengths(own.order)) + more[name] for name, own in off.items()},
         residual=residuals(values, nodes, {name: least[kind] for name, kind in kinds.items()}, more),
-        shown=shown(found) if asked.orders is None else asked.orders,
+        shown=shown(found) if asked.orders is None else asked.orders, asked=asked.orders is not None,
     )  # fmt: skip
 
 
@@ -62,10 +62,18 @@ def is_asked(order: float, orders: Sequence[float]) -> bool:
 
 def shown(found: dict[str, tuple[OrderRow, ...]]) -> tuple[float, ...]:
     """The orders that a table shows: up to the last that is no small part of the largest of its quantity."""
-    last = 0.0
+    last, parts = 0.0, dict[float, float]()
     for rows in found.values():
         largest = max((row.size for row in rows), default=0.0)
         last = max([last, *(row.order for row in rows if row.size > IN_TABLE * largest)])
-    every = sorted({row.order for rows in found.values() for row in rows if row.order <= last})
+        for row in rows:
+            parts[row.order] = max(parts.get(row.order, 0.0), row.size / largest if largest > 0.0 else 0.0)
     some = {row.order for rows in found.values() for row in rows if row.size > 0.0}
-    return tuple(order for order in every if order == round(order) or order in some)[:MOST_ROWS]
+    every = [order for order in sorted(parts) if order <= last and (order == round(order) or order in some)]
+    return largest_of([(order, parts[order]) for order in every], MOST_ROWS)
+
+
+def largest_of(sizes: Sequence[tuple[float, float]], most: int) -> tuple[float, ...]:
+    """Of orders with their sizes so many of the largest, ascending; of equal ones the first."""
+    chosen = sorted(sizes, key=lambda own: (-own[1], own[0]))[:most] if len(sizes) > most else sizes
+    return tuple(sorted(order for order, _ in chosen))
