@@ -44,18 +44,18 @@ HALVINGS = 2  # of pieces, where the time of a cycle is added up: a rate that ne
 RATES = frozenset({"rate", "speed", "vx", "vy", "vz"})
 TYPED = 1e-6  # of the work done to and fro: digits of a load that takes just the work of a gas; less is not told
 MOST_CHORDS = 200
-NEWTON = 4
+NEWTON, LOOKS = 4, 3
 
 
 @record
 class WorkCourse:
     """Work, reduced inertia and what they change by along a cycle, piece after piece with both ends of each, (m,).
 
-    steps (m - 1,): from one to the next [rad]. at, weights, W_at, eps_at (n,): the same where the time that a cycle
-    takes is added up, by weights of sum 1. steady [kg m2]: the inertia of the bodies whose part of it does not change.
+    x (m,): their places. weights, W_at, eps_at (n,): where the time that a cycle takes is added up, by weights of sum 1.
+    steady [kg m2]: the inertia of the bodies whose part of it does not change. between: W, k, ε and ½ε' at any places.
     """
 
-    steps: Array
+    x: Array
     W: Array
     k: Array
     eps: Array
@@ -64,6 +64,7 @@ class WorkCourse:
     W_at: Array
     eps_at: Array
     steady: float
+    between: Callable[[Array], tuple[Array, Array, Array, Array]]
 
     def rates(self, E0: float, J: float) -> Array:
         """ω along the cycle [rad/s], (m,); 0 where the energy does not suffice."""
@@ -83,10 +84,29 @@ class WorkCourse:
 
     def extremes(self, mean: float, J: float) -> tuple[float, float]:
         """The slowest and the fastest rate at a mean one."""
-        w = self.rates(self.energy_for(mean, J), J)
+        E0 = self.energy_for(mean, J)
+        w = self.rates(E0, J)
         if w.min() == 0.0:
             return 0.0, float(w.max())
-        return between(w, (self.k - self.half_slope * w * w) / (w * (self.eps + J)), self.steps)
+
+        def at(x: Array) -> tuple[Array, Array]:
+            W, k, eps, half = self.between(x)
+            own = np.sqrt(2.0 * np.maximum(E0 + W, 0.0) / (eps + J))
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return own, (k - half * own * own) / (own * (eps + J))
+
+        return extremes_of(self.x, w, (self.k - self.half_slope * w * w) / (w * (self.eps + J)), at)
+
+    def swing(self, mean: float) -> float:
+        """ΔE, what work and inertia give and take at an even rate [J]."""
+
+        def at(x: Array) -> tuple[Array, Array]:
+            W, k, eps, half = self.between(x)
+            return W - 0.5 * eps * mean**2, k - half * mean**2
+
+        own = self.W - 0.5 * self.eps * mean**2
+        low, high = extremes_of(self.x, own, self.k - self.half_slope * mean**2, at)
+        return high - low
 
     def unevenness(self, mean: float, J: float) -> float:
         """δ with a wheel J at a mean rate."""
@@ -94,17 +114,35 @@ class WorkCourse:
         return (fastest - slowest) / mean
 
 
-def between(values: Array, slopes: Array, steps: Array) -> tuple[float, float]:
-    """The least and the largest of values (m,), steps (m - 1,) apart, and of the cubics between them, by their slopes."""
-    a, b, p, q = values[:-1], values[1:], steps * slopes[:-1], steps * slopes[1:]
+def extremes_of(
+    x: Array, values: Array, slopes: Array, at: Callable[[Array], tuple[Array, Array]]
+) -> tuple[float, float]:
+    """The least and the largest of a number, by its values and slopes at places (m,), and by `at` between them.
+
+    Where a cubic through two neighbours turns the number itself is looked at, and once more where its slope leads.
+    """
+    steps = np.maximum(np.diff(x), 0.0)
+    p, q = steps * slopes[:-1], steps * slopes[1:]
     turns = p * q < 0.0
-    a, b, p, q = a[turns], b[turns], p[turns], q[turns]
+    a, b, p, q = values[:-1][turns], values[1:][turns], p[turns], q[turns]
+    begin, step = x[:-1][turns], steps[turns]
     c2, c3 = 3.0 * (b - a) - 2.0 * p - q, 2.0 * (a - b) + p + q
     s = p / (p - q)
-    for _ in range(NEWTON):
-        s = np.clip(s - (p + s * (2.0 * c2 + 3.0 * c3 * s)) / (2.0 * c2 + 6.0 * c3 * s), 0.0, 1.0)
-    every = np.concatenate([values, a + s * (p + s * (c2 + s * c3))])
+    found = [values]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(NEWTON):
+            s = within(s - (p + s * (2.0 * c2 + 3.0 * c3 * s)) / (2.0 * c2 + 6.0 * c3 * s), s)
+        for _ in range(LOOKS if len(s) else 0):
+            value, slope = at(begin + s * step)
+            found.append(value)
+            s = within(s - step * slope / (2.0 * c2 + 6.0 * c3 * s), s)
+    every = np.concatenate(found)
     return float(every.min()), float(every.max())
+
+
+def within(s: Array, before: Array) -> Array:
+    """Shares between 0 and 1; where one is no number that before it."""
+    return np.asarray(np.clip(np.where(np.isfinite(s), s, before), 0.0, 1.0))
 
 
 def root(f: Callable[[float], float], low: float, high: float) -> float:
@@ -133,9 +171,7 @@ def flywheel(scene: LoadedScene, joint: str, mean: float, delta: float) -> Flywh
     require_placed(scene.setup.scene.mechanism)
     numbers = of_wheel(scene)
     course, even, off = course_of(numbers, len(scene.setup.scene.mechanism.bodies))
-    diagram = course.W - 0.5 * course.eps * mean**2
-    low, high = between(diagram, course.k - course.half_slope * mean**2, course.steps)
-    energy, own = high - low, float(course.weights @ course.eps_at)
+    energy, own = course.swing(mean), float(course.weights @ course.eps_at)
     present = course.unevenness(mean, 0.0)
     added = 0.0
     if present > delta:
@@ -215,8 +251,9 @@ def course_of(numbers: Numbers, bodies: int) -> tuple[WorkCourse, float, WorkErr
     )
     same = np.ptp(eps_of, axis=0) <= tolerances.SAME_VALUE * eps_of.max()
     course = WorkCourse(
-        np.maximum(np.diff(x), 0.0), W, along[:, 0], along[:, 1], along[:, 2], finer.weights,
+        x, W, along[:, 0], along[:, 1], along[:, 2], finer.weights,
         nodes.at(work, finer.places)[:, 0], nodes.at(own, finer.places)[:, 1], float(eps_of[0, same].sum()),
+        lambda at: (nodes.at(work, at)[:, 0], *nodes.at(own, at).T),
     )  # fmt: skip
     return course, even, off
 

@@ -13,7 +13,8 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.balancing.nodes import PieceNodes
-from heuncli.expressions.programs import CONST, KNOT, TABLE, VAR, Expression
+from heuncli.expressions.composed import JUMPS
+from heuncli.expressions.programs import CONST, HOLD, KNOT, TABLE, VAR, Expression
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import replace
 from heuncli.results import Array
@@ -21,8 +22,8 @@ from heuncli.results import Array
 ALLOWED = 1e-6  # of all that a law does over the cycle: what bounds may go beyond what was seen
 PLACES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a stretch, at which the polynomial is looked at
 BESIDE = 1e-10  # of a cycle: so near to the ends of pieces laws may be on their other side
+LATER = 1e-2  # of the most that any stretch may hide: those that may hide less are looked at later
 MOST_STRETCHES = 60_000
-MOST_ROUNDS = 40
 
 
 class Suspects(NamedTuple):
@@ -41,18 +42,25 @@ def laws_of_angle(values: Iterable[Expression], joint: str, rate: float) -> Iter
 
 
 def in_angle(value: Expression, rate: float) -> Expression:
-    """A law in one joint's angle, and in its rate, which is held, as one of the time."""
-    held, constant = [1 + k for k, use in enumerate(value.uses) if use[1] == "rate"], len(value.constants)
+    """A law in one joint's angle, and in its rate, which is held, as one of the time; its branches are not held."""
+    steady, constant = [1 + k for k, use in enumerate(value.uses) if use[1] == "rate"], len(value.constants)
+    pairs = list(zip(value.code[::2], value.code[1::2], strict=True))
+    is_data = [False] * (len(pairs) + 1)
+    for i, (op, _) in enumerate(pairs):
+        is_data[i + 1] = not is_data[i] and op in (TABLE, KNOT)
+    holds = [op == HOLD and not data for (op, _), data in zip(pairs, is_data, strict=False)]
+    at = [i - sum(holds[:i]) for i in range(len(pairs) + 1)]  # where each instruction comes to stand
     code: list[int] = []
-    is_data = False
-    for op, argument in zip(value.code[::2], value.code[1::2], strict=True):
-        if is_data or op != VAR:
-            code += [op, argument]
-        else:
-            code += [CONST, constant] if argument in held else [VAR, 0]
-        is_data = not is_data and op in (TABLE, KNOT)
+    for i, (op, k) in enumerate(pairs):
+        if holds[i]:
+            continue
+        if not is_data[i] and op == VAR:
+            op, k = (CONST, constant) if k in steady else (VAR, 0)
+        elif not is_data[i] and op in JUMPS:
+            k = at[i + 1 + k] - at[i + 1]
+        code += [op, k]
     found: Expression = replace(
-        value, uses=(), time_dependent=True, code=tuple(code), constants=(*value.constants, rate), held=value.held
+        value, uses=(), time_dependent=True, code=tuple(code), constants=(*value.constants, rate), held=()
     )
     return found
 
@@ -76,31 +84,41 @@ def suspects_of(law: Expression, nodes: PieceNodes) -> tuple[Array, bool]:
     own = nodes.coefficients(values)
     shrunk = BESIDE * nodes.length
     a, b = nodes.begins + shrunk, nodes.ends - shrunk
-    size = float(np.ptp(values))
-    found: list[Array] = []
-    looked = 0
     a, b = a[b > a], b[b > a]
-    for _ in range(MOST_ROUNDS):
-        if not len(a):
-            return np.concatenate([*found, np.zeros(0)]), True
-        looked += len(a)
+    more = excess(law, nodes, own, a, b)
+    size, found, looked = float(np.ptp(values)), [np.zeros(0)], 0
+    while len(a):
+        # those that may hide most are looked at first: what they hide tells what is small beside it
+        now = ~(more <= LATER * more.max()) | ~np.isfinite(more)
+        looked += int(now.sum())
         if looked > MOST_STRETCHES:
-            break
-        least, most = bounds(law, nodes, a, b)
-        at = a[:, None] + (b - a)[:, None] * PLACES
-        seen = nodes.at(own, at.ravel()).reshape(at.shape)
-        allowed = ALLOWED * (size if size > 0.0 else float(np.abs(values).max()))
-        more = ~((most <= seen.max(axis=1) + allowed) & (least >= seen.min(axis=1) - allowed))
-        a, b = a[more], b[more]
-        middle = 0.5 * (a + b)
-        there = np.array(law.sample(angles(nodes, middle).tolist()))
-        off = ~(np.abs(there - nodes.at(own, middle)[:, 0]) <= allowed)
-        found.append(middle[off])
-        a, middle, b = a[~off], middle[~off], b[~off]
-        wide = b - a > tolerances.SIDE_BY_SIDE * nodes.length
-        a, middle, b = a[wide], middle[wide], b[wide]
-        a, b = np.concatenate([a, middle]), np.concatenate([middle, b])
-    return np.concatenate([*found, np.zeros(0)]), False
+            return np.concatenate(found), False
+        middle = 0.5 * (a[now] + b[now])
+        off = np.abs(np.array(law.sample(angles(nodes, middle).tolist())) - nodes.at(own, middle)[:, 0])
+        size = max(size, float(off.max(initial=0.0)))
+        seen = off > ALLOWED * size
+        found.append(middle[seen])
+        left, right = a[now][~seen], b[now][~seen]
+        wide = right - left > tolerances.SIDE_BY_SIDE * nodes.length
+        left, middle, right = left[wide], middle[~seen][wide], right[wide]
+        fresh_a, fresh_b = np.concatenate([left, middle]), np.concatenate([middle, right])
+        fresh = excess(law, nodes, own, fresh_a, fresh_b)
+        a, b = np.concatenate([a[~now], fresh_a]), np.concatenate([b[~now], fresh_b])
+        more = np.concatenate([more[~now], fresh])
+        counts = ~(more <= ALLOWED * size) if size > 0.0 else more > 0.0
+        a, b, more = a[counts], b[counts], more[counts]
+    return np.concatenate(found), True
+
+
+def excess(law: Expression, nodes: PieceNodes, own: Array, a: Array, b: Array) -> Array:
+    """By how much a law may go beyond what its polynomials show of it over stretches, (n,)."""
+    if not len(a):
+        return np.zeros(0)
+    least, most = bounds(law, nodes, a, b)
+    at = a[:, None] + (b - a)[:, None] * PLACES
+    seen = nodes.at(own, at.ravel()).reshape(at.shape)
+    found = np.maximum(most - seen.max(axis=1), seen.min(axis=1) - least)
+    return np.asarray(np.where(np.isnan(found), np.inf, found))
 
 
 def angles(nodes: PieceNodes, x: Array) -> Array:
