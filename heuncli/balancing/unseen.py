@@ -22,7 +22,8 @@ from heuncli.results import Array
 ALLOWED = 1e-6  # of all that a law does over the cycle: what bounds may go beyond what was seen
 PLACES = np.array([0.0, 0.25, 0.5, 0.75, 1.0])  # of a stretch, at which the polynomial is looked at
 BESIDE = 1e-10  # of a cycle: so near to the ends of pieces laws may be on their other side
-LATER = 1e-2  # of the most that any stretch may hide: those that may hide less are looked at later
+LATER = 1e-2  # of the most that any stretch may hide: those that may hide less are looked at later; and of what one
+# may hide: a place that shows less of it is not yet where it is
 MOST_STRETCHES = 60_000
 
 
@@ -96,7 +97,7 @@ def suspects_of(law: Expression, nodes: PieceNodes) -> tuple[Array, bool]:
         middle = 0.5 * (a[now] + b[now])
         off = np.abs(np.array(law.sample(angles(nodes, middle).tolist())) - nodes.at(own, middle)[:, 0])
         size = max(size, float(off.max(initial=0.0)))
-        seen = off > ALLOWED * size
+        seen = (off > ALLOWED * size) & (off > LATER * more[now])
         found.append(middle[seen])
         left, right = a[now][~seen], b[now][~seen]
         wide = right - left > tolerances.SIDE_BY_SIDE * nodes.length
