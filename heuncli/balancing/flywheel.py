@@ -51,8 +51,8 @@ NEWTON, LOOKS = 4, 3
 class WorkCourse:
     """Work, reduced inertia and what they change by along a cycle, piece after piece with both ends of each, (m,).
 
-    x (m,): their places. weights, W_at, eps_at (n,): where the time that a cycle takes is added up, by weights of sum 1.
-    steady [kg m2]: the inertia of the bodies whose part of it does not change. between: W, k, ε and ½ε' at any places.
+    x (m,): their places. weights, W_at, eps_at (n,): where the time of a cycle is added up, by weights of sum 1. steady
+    [kg m2]: the inertia of the bodies whose part of it does not change. between: W, k, ε and ½ε' at any places.
     """
 
     x: Array

@@ -102,9 +102,9 @@ class FollowedRun:
         return np.asarray(grid[1:-1] * abs(self.rate))
 
     def looked_at(self, nodes: PieceNodes) -> Array:
-        """The places (n,) at which steps end that begin with the pieces: bounds shortened them, or the branch they keep.
+        """The places (n,) at which steps end that begin with the pieces and do not end with them.
 
-        A step sees loads at its ends and in its middle; where bounds allow more it ends there.
+        A step sees loads at its ends and in its middle; where bounds allow more it is shortened to there.
         """
         ends = self.trajectory(np.array([0.0, self.last]), nodes.begins[1:] / abs(self.rate)).ends * abs(self.rate)
         k = np.clip(np.searchsorted(nodes.begins, ends), 0, len(nodes.begins) - 1)

@@ -6,7 +6,6 @@ j_n: spherical Bessel functions, upwards where ω is larger than n, else downwar
 
 from __future__ import annotations
 
-import math
 from functools import cache
 
 import numpy as np

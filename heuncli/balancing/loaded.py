@@ -56,9 +56,7 @@ class LoadedScene:
         """It at a few even places, by which it is told how many numbers there are, and what their terms are."""
         return self.at(self.followed.length * np.arange(FEW) / FEW)
 
-    def numbers(
-        self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]
-    ) -> Numbers:
+    def numbers(self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]) -> Numbers:
         """Columns over the cycle, on as many pieces as tell them.
 
         parts: so many side by side that are of one kind; rounding: of each kind what of its numbers is that.

@@ -29,7 +29,7 @@ NEXT_LENGTHS = 13  # digits to which lengths of pieces are the same
 
 
 class NodeErrors(NamedTuple):
-    """How far numbers are off, of the shape of one node's: any of their orders, as their mean, and any value of them."""
+    """How far numbers are off, of the shape of one node's: any of their orders, their mean too, and any value."""
 
     order: Array
     value: Array

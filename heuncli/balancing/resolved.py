@@ -1,4 +1,4 @@
-"""Numbers over a cycle on so many pieces that polynomials tell them all: pieces are halved until their tails are rounding.
+"""Numbers over a cycle on so many pieces that polynomials tell all of them: halved until their tails are rounding.
 
 Breaks that are known end pieces. One that is not is closed in by halving, down to what is no length any more. Where
 halving lowers a tail no further it is the rounding of the numbers themselves. Probes are places at which what was found
@@ -154,9 +154,7 @@ class Resolver:
 
     def with_pieces(self, pieces: Pieces) -> PieceNodes:
         """The cycle's nodes on pieces."""
-        found: PieceNodes = replace(
-            self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int)
-        )
+        found: PieceNodes = replace(self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int))
         return found
 
     def found(self) -> Resolved:

@@ -128,7 +128,7 @@ class Flywheel:
     energy: ΔE [J], what work loads and inertia give and take at an even rate; own: the machine's mean reduced inertia,
     added, and textbook's [kg m2];
     delta: asked, present: without the wheel; even [N m]: the torque that was added so that the cycle closes; start,
-    fastest, slowest [rad/s]: with the wheel. error: of each of them, by its name; notes: what is not known of the loads.
+    fastest, slowest [rad/s]: with the wheel. error: of each of them, by its name; notes: what is not known of loads.
     """
 
     joint: str

@@ -54,7 +54,9 @@ def all_rows(
     flat = replace(turning, axis=None)
     return {
         "force": order_rows(-scale * effects.force, nodes, turning, least["force"], wanted=wanted.get("force", ANY)),
-        "moment": order_rows(-scale * effects.moment, nodes, turning, least["moment"], parts, wanted.get("moment", ANY)),
+        "moment": order_rows(
+            -scale * effects.moment, nodes, turning, least["moment"], parts, wanted.get("moment", ANY)
+        ),
         "torque": order_rows(torque, nodes, flat, least["torque"], wanted=wanted.get("torque", ANY)),
     }
 

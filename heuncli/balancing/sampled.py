@@ -44,7 +44,7 @@ def evenly(followed: FollowedScene, about: Array) -> Cycle | None:
 
 
 def is_seen(followed: FollowedScene, cycle: Cycle, about: Array) -> bool:
-    """Whether waves through the nodes tell the cycle where its run took short steps, and where laws in time ask for it."""
+    """Whether waves through the nodes tell the cycle where its run took short steps, and as laws in time ask for."""
     run, n = followed.followed, len(cycle.angles)
     x = np.union1d(run.short_steps(BETWEEN * run.length / n), run.given_in_time())
     if not len(x):

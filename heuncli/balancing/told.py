@@ -26,7 +26,7 @@ def told(
     spec: Spec, coordinate: str, turning: CycleTurning, effects: MassEffects, about: Array, asked: BalanceOptions,
     noise: Mapping[str, float] = NOTHING,
 ) -> BalanceResults:  # fmt: skip
-    """What was found, by orders of a coordinate at the cycle's rate; noise: what force and moment are off by besides."""
+    """What was found, by orders of a coordinate at the cycle's rate; noise: what these are off by besides."""
     scale, nodes = turning.scale, effects.nodes
     least = {name: max(x, noise.get(name, 0.0)) for name, x in rounding_of(effects, scale).items()}
     wanted = {name: WantedOrders(asked.orders, noise.get(name, 0.0)) for name in least}

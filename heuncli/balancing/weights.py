@@ -13,9 +13,9 @@ from heuncli.balancing.cost import cost
 from heuncli.balancing.counterweights import Weight, applied, least
 from heuncli.balancing.cycle import Cycle, axis_of, turning
 from heuncli.balancing.effects import mass_effects
-from heuncli.balancing.sampled import sampled
 from heuncli.balancing.results import Counterbalance, PlacedWeight
 from heuncli.balancing.rows import CycleTurning, all_rows, rounding_of
+from heuncli.balancing.sampled import sampled
 from heuncli.balancing.verdicts import in_words
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Mechanism

@@ -58,7 +58,9 @@ def wrapped() -> str:
     return "(p.angle + 2*pi*(step(-p.angle) - step(p.angle - 2*pi)))"
 
 
-def polynomial_piece(a: Any, b: Any, c: tuple[float, float, float]) -> tuple[Callable[[int], Any], Callable[[Any], Any]]:
+def polynomial_piece(
+    a: Any, b: Any, c: tuple[float, float, float]
+) -> tuple[Callable[[int], Any], Callable[[Any], Any]]:
     """∫ (c0 + c1 x + c2 x²) e^{-ikx} over [a, b], and ∫ of it from a to an angle, x from a on."""
 
     def upto(x: Any) -> Any:
@@ -69,6 +71,7 @@ def polynomial_piece(a: Any, b: Any, c: tuple[float, float, float]) -> tuple[Cal
         if k == 0:
             return upto(b)
         s, h = mp.mpc(0, -k), b - a
+
         # by parts: ∫ f e^{sx} = [f/s - f'/s² + f''/s³] e^{sx}
         def primitive(x: Any) -> Any:
             f, f1, f2 = c[0] + c[1] * x + c[2] * x**2, c[1] + 2 * c[2] * x, 2 * c[2]

@@ -109,7 +109,9 @@ def load_table(found: BalanceResults) -> TextTable:
     notes = [f"mean: {how.write(mean)} N·m, within {error:.1g} N·m"]
     left = [row.order for row in counts if row.order not in told]
     if left and not found.asked:
-        notes.append(f"{len(left)} smaller ones up to order {left[-1]:g} are left out: --orders shows any, JSON has all")
+        notes.append(
+            f"{len(left)} smaller ones up to order {left[-1]:g} are left out: --orders shows any, JSON has all"
+        )
     return table._replace(notes=(*table.notes, *notes))
 
 
@@ -256,7 +258,10 @@ def to_csv(found: BalanceResults) -> str:
                 lines.append(f"{kind},{row.order:g},{quantity},{component},{of or unit},{value!r}")
     for kind, own in found.residual.items():
         unit = unit_of(found, kind.partition("_")[0])
-        lines += [f"{kind},,{name},,{unit},{value!r}" for name, value in (("rms", own.rms), ("peak", own.peak), ("error", own.error))]
+        lines += [
+            f"{kind},,{name},,{unit},{value!r}"
+            for name, value in (("rms", own.rms), ("peak", own.peak), ("error", own.error))
+        ]
         lines.append(f"{kind},,at,,rad,{own.at!r}")
     return "\n".join(lines) + "\n"
 
