@@ -14,6 +14,7 @@ import math
 import random
 from collections import Counter
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import mpmath as mp
@@ -249,7 +250,7 @@ def turning_points(case: Case, mean: Any) -> list[Any]:
     def load_at(x: Any) -> Any:
         return sum((part.value(x) for part in case.parts), mp.mpf(0)) - mean
 
-    for a, b in zip(ends[:-1], ends[1:], strict=True):
+    for a, b in pairwise(ends):
         if b - a < mp.mpf(10) ** -30:
             continue
         places = [a + (b - a) * mp.mpf(j) / 600 for j in range(601)]
