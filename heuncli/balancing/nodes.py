@@ -25,6 +25,7 @@ Course = Callable[[Array], Array]  # of places (m,) the numbers there, (m, ...)
 QUARTER = 4  # the last so many-th part of the orders tells how far all are off
 OF_TAIL = 4.0  # times the largest of these: as much as any order is off by noise and by what is not told
 LOCATED = 1e-11  # of a cycle: how well it is known where a law jumps: an event is met to what its coordinates round
+ROUNDED = tolerances.SUM_ROUNDING  # of a cycle: rounding of a place in it, and of coordinates that follow from it
 NEXT_LENGTHS = 13  # digits to which lengths of pieces are the same
 
 
@@ -249,7 +250,10 @@ class PieceNodes:
         own = self.coefficients(values)
         tails, shares = self.tails(own), (self.ends - self.begins) / self.length
         rounding = 2.0 * tolerances.EPS * np.abs(values.reshape(len(values), -1)).max(axis=0)
-        order = 2.0 * (shares @ tails + LOCATED * self.jumps(own).sum(axis=0)) + rounding
+        # what is steep counts by how well places are known that it hangs on
+        way = np.abs(np.diff(values.reshape(len(values), -1), axis=0)).sum(axis=0)
+        moved = ROUNDED * (1.0 + abs(self.begin) / self.length) * way
+        order = 2.0 * (shares @ tails + LOCATED * self.jumps(own).sum(axis=0) + moved) + rounding
         wide = shares > tolerances.SIDE_BY_SIDE  # between the two sides of a jump nothing is told
         value = tails[wide].max(axis=0, initial=0.0) + rounding
         shape = values.shape[1:]

@@ -125,7 +125,7 @@ def test_a_punch_counts_in_full_however_short(width: float) -> None:
 
 
 def test_loads_have_orders_as_high_as_they_go() -> None:
-    """5 cos 30φ + 10 |sin φ|: of the latter order k has 40/π/(k² - 1), from 160 on less than a ten-thousandth of 4.99."""
+    """5 cos 30φ + 10 abs(sin φ): order k of the latter is 40/π/(k² - 1), from 160 on less than 4.99e-4."""
     told = balance_of(SHAFT.replace("LAW", "5*cos(30*shaft.angle) + 10*abs(sin(shaft.angle))"), rate=20.0)
     rows = {row.order: row for row in told.orders["load"]}
     for k in range(2, 160, 2):
