@@ -34,6 +34,7 @@ from heuncli.telling.asked_values import choice, positive, tolerance
 from heuncli.telling.selection import Only, only, selected
 
 if TYPE_CHECKING:
+    from heuncli.in_python.arguments import ArgumentKind
     from heuncli.in_python.given import SpecGiven
     from heuncli.in_python.solved import Solved
 
@@ -89,8 +90,11 @@ def solve(
     Raises SpecError for a spec that is none, UsageError for arguments, SolveError for what cannot be solved, LimitError
     where a limit is reached: all are HeunError, whose `problems` have code, message, hint and place. Warns HeunWarning.
     """
+    from heuncli.in_python.arguments import TEXT, check_arguments
     from heuncli.in_python.given import settings_of, source_of
 
+    check_arguments(("case", case, TEXT), *_common(text, set, only, at, tolerance, method, step, time_limit, axes))
+    _check_truths(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = source_of(spec, text)
     _require_no_all(case)
     options = _options(tolerance, method, step, least_norm, reduce, axes)
@@ -123,8 +127,11 @@ def solve_cases(
 
     time_limit [s]: of each case. Raises UsageError where the spec has no load cases.
     """
+    from heuncli.in_python.arguments import check_arguments
     from heuncli.in_python.given import settings_of, source_of
 
+    check_arguments(*_common(text, set, only, at, tolerance, method, step, time_limit, axes))
+    _check_truths(least_norm=least_norm, reduce=reduce, by_cause=by_cause)
     name, source = source_of(spec, text)
     options = _options(tolerance, method, step, least_norm, reduce, axes)
     options = replace(options, time_limit=_limit(time_limit))
@@ -142,8 +149,10 @@ def validate(spec: SpecGiven | None = None, *, text: str | None = None) -> tuple
 
     spec, text: as of `solve`. Raises SpecError with every problem of the spec, in the order of the lines.
     """
+    from heuncli.in_python.arguments import TEXT, check_arguments
     from heuncli.in_python.given import source_of
 
+    check_arguments(("text", text, TEXT))
     name, source = source_of(spec, text)
     scene, cases = load_with_cases(name, (), text=source)
     return tuple(dict.fromkeys(problem for one in (scene, *cases.values()) for problem in one.warnings))
@@ -160,6 +169,26 @@ def _answered(
     options = replace(options, room=Room(*room("table")))
     study = solve_spec(scene, replace(options, wanted=what.reports, entries=what.entries))
     return told(study, at)
+
+
+def _common(
+    text: object, settings: object, only: object, at: object, tolerance: object, method: object, step: object,
+    time_limit: object, axes: object,
+) -> list[tuple[str, object, ArgumentKind]]:  # fmt: skip
+    """The arguments of both ways to solve, with their names and kinds."""
+    from heuncli.in_python.arguments import MAPPING, NUMBER, NUMBERS, TEXT, TEXTS
+
+    return [
+        ("text", text, TEXT), ("set", settings, MAPPING), ("only", only, TEXTS), ("at", at, NUMBERS),
+        ("tolerance", tolerance, NUMBER), ("method", method, TEXT), ("step", step, NUMBER),
+        ("time_limit", time_limit, NUMBER), ("axes", axes, TEXT),
+    ]  # fmt: skip
+
+
+def _check_truths(**given: object) -> None:
+    from heuncli.in_python.arguments import TRUTH, check_arguments
+
+    check_arguments(*((name, value, TRUTH) for name, value in given.items()), optional=False)
 
 
 def _options(

@@ -57,6 +57,10 @@ class Finding(ValueError):
         super().__init__(message)
         self.code, self.message, self.hint = code, message, hint
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle it by its attributes, not by the arguments of its class."""
+        return restore_error, (type(self), self.args, self.__dict__)
+
 
 class HeunError(Exception):
     """A failure the user can act on; `exit_code` is the command's exit status (manual/commands.md, "Exit codes")."""
@@ -67,9 +71,21 @@ class HeunError(Exception):
         super().__init__("\n".join(str(p) for p in problems))
         self.problems = problems
 
+    def __reduce__(self) -> tuple[object, ...]:
+        """Pickle it by its attributes: some classes make the problem of other arguments."""
+        return restore_error, (type(self), self.args, self.__dict__)
+
     def tell(self, *problems: Problem) -> None:
         """Tell these problems instead."""
         self.args, self.problems = ("\n".join(map(str, problems)),), problems
+
+
+def restore_error(cls: type[BaseException], args: tuple[object, ...], attributes: dict[str, object]) -> BaseException:
+    """Make an error that was pickled, without the arguments of its class."""
+    error = cls.__new__(cls, *args)
+    error.args = args
+    error.__dict__.update(attributes)
+    return error
 
 
 class UsageError(HeunError):

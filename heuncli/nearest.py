@@ -14,6 +14,7 @@ MOST_LISTED = 20
 LONGEST = 60  # characters of a word for which another one is suggested: comparing goes by the square of the length
 EFFORT = 16_000_000  # pairs of characters compared for a file, a quarter of a second: 40 words among 5,000 names of 5
 
+SETS = (set, frozenset)  # have no order: it changes from run to run
 OVERHEAD = 4  # characters that a name costs by itself
 
 
@@ -41,7 +42,7 @@ def nearest(word: str, *known: Collection[str]) -> str | None:
     """The known word most like this one, if any is like it, and if it is still looked for."""
     if len(word) > LONGEST or not afford(sum(map(len, known)) * (len(word) + OVERHEAD) ** 2):
         return None
-    return _most_like(word, chain(*known))
+    return _most_like(word, chain.from_iterable(sorted(one) if isinstance(one, SETS) else one for one in known))
 
 
 def _most_like(word: str, known: Iterable[str]) -> str | None:
@@ -74,5 +75,6 @@ def did_you_mean(word: str, known: Collection[str], kind: str) -> str:
 
 
 def listed(known: Collection[str]) -> str:
-    """The first words of some."""
+    """The first words of some; of a set, which has no order of its own, in that of the alphabet."""
+    known = sorted(known) if isinstance(known, SETS) else known
     return ", ".join(islice(known, MOST_LISTED)) + (", ..." if len(known) > MOST_LISTED else "")

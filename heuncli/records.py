@@ -3,14 +3,25 @@
 `@record` is to its users what `@dataclass(frozen=True, eq=False)` is: fields from the annotations, given by place or by
 name, none set afterwards, each record equal to itself alone. A dataclass is written as source and compiled when it is
 imported, half a millisecond each, and a small run imports sixty; a record class takes a hundredth of that. Defaults are
-shared by all records of a class, so they must be immutable.
+shared by all records of a class, so they must be immutable. A mapping that is one is `MappingProxyType({})`; records
+and named tuples that hold such defaults are sent between processes, so they can be pickled.
 """
 
 from __future__ import annotations
 
+import copyreg
+from types import MappingProxyType
 from typing import Any, TypeVar, dataclass_transform
 
 T = TypeVar("T")
+
+
+def restore_mapping(items: dict[Any, Any]) -> MappingProxyType[Any, Any]:
+    """Make the read-only mapping that was pickled as its items."""
+    return MappingProxyType(items)
+
+
+copyreg.pickle(MappingProxyType, lambda mapping: (restore_mapping, (dict(mapping),)))
 
 
 @dataclass_transform(frozen_default=True, eq_default=False)

@@ -180,7 +180,8 @@ ROWS: tuple[Quantity, ...] = (
     *at("joints.JOINT", "force or torque of the drive ON `to`, along or about the axis", scalar("drive", "N | N·m")),
     *at("joints.JOINT", "the force along the axis, the force across it, the moment across it",
         scalar("axial", "N"), scalar("radial", "N"), scalar("tilting", "N·m")),
-    *at("joints.JOINT", "mean pressure of its `bearing`: \\|force\\| / (diameter · width)", scalar("pressure", "Pa")),
+    *at("joints.JOINT", "mean pressure of its `bearing`: force (with an axis `radial`) / (diameter · width)",
+        scalar("pressure", "Pa")),
     *at("joints.JOINT", "of a `curve` with a `radius`, where the roller touches", vector("contact_point", "m")),
     *at("joints.JOINT", "force of a rod, > 0 where it pulls", scalar("tension", "N")),
     *at("joints.JOINT", "of a `cv`, ON `to` about either shaft", scalar("torque", "N·m")),
@@ -423,6 +424,20 @@ def is_share(row: Quantity) -> bool:
     return f".{SHARES}.CAUSE." in row.path
 
 
+def names_shares(words: list[str]) -> bool:
+    """Whether a path leads to shares by cause: not every `shares` in it does, for a joint or body may be called so."""
+    if words[:1] == [BLOWS]:
+        return names_shares(words[2:])
+    if words[:1] == ["foundation"]:
+        inner = words[1:2] in (["supports"], ["elements"])  # a name behind them may have its block before it
+        return (
+            SHARES in words[3 : 5 if words[2:3] in (["drives"], ["couplings"]) else 4]
+            if inner
+            else words[1:2] == [SHARES]
+        )
+    return words[2:3] == [SHARES]
+
+
 def kind_of_error(kind: str, name: str, number: str) -> str:
     """Of which estimate (of `accuracy.estimate`) the error of a quantity is, by the words of its path.
 
@@ -431,9 +446,10 @@ def kind_of_error(kind: str, name: str, number: str) -> str:
     """
     if kind == BLOWS:
         kind, _, name = name.partition(".")[2].partition(".")
-    whole, by_cause, _ = f".{name}".rpartition(f".{SHARES}.")
+    words = name.split(".")  # `shares.CAUSE` of the foundation, else `NAME.shares.CAUSE`: a NAME may be `shares`, too
+    by_cause = words[-2:-1] == [SHARES] and (kind == "foundation" or len(words) > 2)
     if by_cause and kind in SHARED | {"couplings"}:
-        return f"{kind_of_error(kind, whole.removeprefix('.'), number.removeprefix('direct_'))} {BY_CAUSE}"
+        return f"{kind_of_error(kind, '.'.join(words[:-2]), number.removeprefix('direct_'))} {BY_CAUSE}"
     if kind == "joints" and number == "drive":
         return "drives"
     if kind == "foundation" and name.startswith("supports."):

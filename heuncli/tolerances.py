@@ -128,6 +128,9 @@ CONTACT_TOUCHES = 1e-12  # of the size, and of places and limits: START_ROUNDING
 # touches at an instant touches in a run from a moved start, too
 CONTACT_RATE = 1e-12  # of the terms of a rate of opening: thousands of roundings, which settling and a blow leave
 CONTACT_ACCELERATION = 1e-11  # the same of accelerations, which loads and factors leave a digit more of
+CONTACT_TOGETHER = 1e-8  # of a gap: contacts of a sequence that close within it close together; ten times the default
+# tolerance of a motion, so that a start moved by its error finds the same ones
+CONTACT_BASIS = 1e-3  # of a contact's own answer: what those before it must leave of it, to be solved for by its rate
 CONTACT_DEPENDS = 1e-12  # of a contact's own answer: what others leave of it if less; squares, so 1e-6 of a lever
 NO_ANSWER = 1e-13  # of what free bodies would answer: what all other joints hold already, to hundreds of roundings
 SHORTEST_FLIGHT = 1e-12  # of the run's length: a hundred times what its instants are told apart by (least_step)

@@ -15,6 +15,7 @@ from heuncli.cli.entry import enter
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
 from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
+from tests.shared.processes import hand_down_signals
 
 # Folders that judge numbers: the plain kernel gives the same bits (tests/package/test_kernels_agree.py), but slowly.
 # And pictures, pages, reports, decks, collectives and what Python gets, which are shown numbers; and additions, which
@@ -57,7 +58,8 @@ def heun(folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFi
 
 
 def pytest_configure() -> None:
-    """Warnings are errors in processes that tests start, too."""
+    """Processes that tests start take signals as on a terminal, and warnings are errors in them, too."""
+    hand_down_signals()
     os.environ.setdefault("PYTHONWARNINGS", "error::RuntimeWarning")  # NumPy's; of these users would see the paths
 
 

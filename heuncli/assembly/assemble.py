@@ -7,7 +7,7 @@ from heuncli.assembly.displaced_bodies import moved
 from heuncli.assembly.gaps import size_of
 from heuncli.assembly.poses import Placing
 from heuncli.assembly.rates import Moving
-from heuncli.assembly.start_choices import chosen, pose_choices, rate_choices
+from heuncli.assembly.start_choices import chosen, pose_choices, rate_choices, resting_centres
 from heuncli.assembly.walk import AssemblyPoses, Tree
 from heuncli.mechanism.model import Assembly, Mechanism
 from heuncli.records import record, replace
@@ -80,4 +80,5 @@ def _started(mechanism: Mechanism, found: list[JointCondition], placed: Placed, 
         start,
         chosen=(*folds, *chosen(choices)),
         moved=moved(mechanism, found, placed.drawn, start, size),
+        started=resting_centres(mechanism, moving),
     )

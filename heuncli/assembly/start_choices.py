@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.assembly.rates import Rates
+from heuncli.assembly.rates import Moving, Rates
 from heuncli.assembly.walk import AssemblyPoses, Tree
 from heuncli.mechanism.model import Mechanism
 from heuncli.named_tuples import NamedTuple
@@ -103,6 +103,30 @@ def rate_choices(mechanism: Mechanism, rates: Rates, tree: Tree, fitted: set[int
             how_chosen = (how, joint, rates.w[i], scale / size) if turning[i] else ("zero",)
             found.append(StartChoice(body.name, "angular velocity", *how_chosen))
     return found
+
+
+def resting_centres(mechanism: Mechanism, moving: Moving) -> tuple[str, ...]:
+    """Sentences on bodies that are given an angular velocity and no velocity: their centres rest, not their origins.
+
+    Where a joint holds a point of the body, that decides, and nothing is told.
+    """
+    found = []
+    for i, body in enumerate(mechanism.bodies):
+        if body.angular_velocity is None or body.velocity is not None or i in moving.fitted:
+            continue
+        arm = moving.poses.R[i] @ body.center
+        origin = np.cross(arm, moving.rates.w[i])  # past the centre
+        joint = moving.tree.via[i]
+        F = moving.rows[joint].F if joint >= 0 else np.zeros((0, 3))
+        chosen_part = origin - F.T @ (F @ origin)
+        if np.abs(chosen_part).max() > tolerances.UNMOVED * moving.size * np.abs(moving.rates.w[i]).max():
+            where = f" as far as joint {mechanism.joints[joint].name} lets it" if joint >= 0 else ""
+            velocity = _vector(moving.rates.v[i] + origin, float(np.abs(origin).max()))
+            found.append(
+                f"{body.name} has an angular_velocity and no velocity: its centre of mass starts at rest{where}, "
+                f"its origin at {velocity} m/s"
+            )
+    return tuple(found)
 
 
 def _origin(mechanism: Mechanism, tree: Tree, body: int, fitted: set[int]) -> tuple[str, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import os
 from collections.abc import Callable, Mapping
 from typing import Annotated, Any
 
@@ -14,6 +15,7 @@ from heuncli.cli.options import RequestField, fields_of
 from heuncli.cli.registry import Asked, Command
 
 EPILOG = "Exit codes: 0 fine, 1 a check failed, 2 bad usage or spec, 3 cannot be solved, 4 a limit, 5 output, 70 a bug."
+COMPLETING = "_HEUN_COMPLETE"  # set by the shell that asks
 
 
 def read(argv: list[str]) -> Asked | int:
@@ -28,6 +30,8 @@ def read(argv: list[str]) -> Asked | int:
         pretty_exceptions_enable=False,
     )
     app.callback()(_callback)
+    if COMPLETING in os.environ:  # each line is a completion: typer breaks what explains one at the terminal's width
+        os.environ["COLUMNS"] = "10000"
     named = registry.command_of(argv[0]) if argv else None
     for command in registry.COMMANDS if named is None else (named,):
         app.command(command.name, help=command.request.__doc__)(_reader(command, taken.append))

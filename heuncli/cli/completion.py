@@ -26,6 +26,10 @@ OF_BLOCK = {
 }
 SETTABLE = ("gravity", "space", "title")
 MOST = 400  # completions that are offered
+# What a shell would run, expand or split, and what a terminal would not show as it is, is never put on a command line:
+# no name of a sound spec has any of it.
+IN_WORDS = re.compile(r"[\w.,:=+\- ]*")
+IN_FILES = re.compile(r"(?![-~])[\w./,:=+@%~ -]*")
 
 
 def files(incomplete: str) -> list[str]:
@@ -40,7 +44,7 @@ def files(incomplete: str) -> list[str]:
         (name, is_folder) for name, is_folder in found if name.startswith(start) and not name.startswith(".")
     )
     kept = [name + "/" * is_folder for name, is_folder in named if is_folder or name.endswith(SPECS)]
-    return [os.path.join(folder, name) for name in kept]  # noqa: PTH118  # as it was typed
+    return [os.path.join(folder, name) for name in kept if IN_FILES.fullmatch(name)]  # noqa: PTH118  # as it was typed
 
 
 def sets(data: dict[str, Any], incomplete: str) -> Iterator[str]:
@@ -133,7 +137,8 @@ def _of_spec(words: Callable[[dict[str, Any], str], Iterator[str]]) -> Callable[
             data = read(given, None).data
         except (HeunError, Finding):
             return []
-        found = dict.fromkeys(word for word in words(mapping(data), incomplete) if word.startswith(incomplete))
+        known = words(mapping(data), incomplete)
+        found = dict.fromkeys(word for word in known if word.startswith(incomplete) and IN_WORDS.fullmatch(word))
         return [*found][:MOST]
 
     return complete

@@ -118,11 +118,14 @@ def _require_limit(option: str, limit: float | None) -> None:
 def _through_typer(argv: list[str]) -> Asked | int:
     import contextlib
     import io
-
-    from heuncli.cli import app
+    import warnings
 
     answers, complaints = io.StringIO(), io.StringIO()  # where standard error is closed typer complains to the other
-    with contextlib.redirect_stdout(answers), contextlib.redirect_stderr(complaints):
+    with contextlib.redirect_stdout(answers), contextlib.redirect_stderr(complaints), warnings.catch_warnings():
+        # What an older typer uses of a newer click is not heun's to mend, and no reason to end `python -W error`.
+        warnings.simplefilter("ignore", DeprecationWarning)
+        from heuncli.cli import app
+
         answer = app.read(list(map(shown, argv)))  # a complaint quotes what it does not understand
         if not isinstance(answer, int):
             answer = app.read(argv)

@@ -1,7 +1,7 @@
 """A file that is written whole or not at all, and what stands for one: pipes, devices, open descriptors. Impure.
 
-An ordinary file is written beside its place and renamed into it: at every moment the old content or the new one stands
-there, and no signal leaves anything else. Where that cannot be, it is said before the work.
+An ordinary file is written beside its place and put there as a whole: at every moment the old content or the new one
+stands there, and nothing that ends the process leaves anything else. Where that cannot be, it is said before the work.
 """
 
 from __future__ import annotations
@@ -9,7 +9,9 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import time
 from collections.abc import Iterable
+from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -37,6 +39,8 @@ HINTS = {
 }
 NO_NAMES = ("", ".", "..")  # behind the last / of what is a folder
 OTHER_HINT = "name another file"
+LEFT_BEHIND = 60.0  # seconds since anything was written to a file of nobody; what was just made may not be locked yet
+_looked_into: set[str] = set()  # folders
 
 
 class ReaderGone(HeunError):
@@ -115,29 +119,85 @@ def write_all(number: int, content: bytes) -> None:
 
 
 def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
-    """Write beside the place, then rename into it."""
-    temporary = str(_path(place.path).with_name(f".heun-{os.urandom(8).hex()}"))
+    """Write beside the place, into a file without a name where the system has such, then put that into the place.
+
+    So a process that is killed leaves nothing, but where there are none, or between the two calls that give a file the
+    name of an old one: what it leaves then the next run removes.
+    """
+    folder, name = os.path.split(place.path)
+    _remove_left_behind(folder)
+    temporary = os.path.join(folder, f".heun-{os.urandom(8).hex()}")  # noqa: PTH118 - pathlib takes 3 ms
     remove = partial(_path(temporary).unlink, missing_ok=True)
     with Undoing(remove):
         try:
-            _fill(temporary, pieces, place.state)
-            _path(temporary).replace(place.path)
+            number, is_named = _open_new(folder, temporary, 0o600 if place.state is not None else 0o666)
+            try:
+                _lock(number)
+                write_pieces(number, pieces)
+                if place.state is not None:
+                    which = number if os.chmod in os.supports_fd else temporary
+                    os.chmod(which, stat.S_IMODE(place.state.st_mode))  # noqa: PTH101
+                os.fsync(number)
+                is_placed = not is_named and place.state is None and _link(number, folder, name)
+                if not is_placed and not is_named:
+                    _link(number, folder, os.path.basename(temporary))  # noqa: PTH119
+            finally:
+                os.close(number)
+            if not is_placed:
+                os.replace(temporary, place.path)  # noqa: PTH105
         except BaseException:
             remove()
             raise
 
 
-def _fill(temporary: str, pieces: Iterable[bytes], old: os.stat_result | None) -> None:
-    """A new file with the pieces and, from the start, no more rights than the old one; of a new one, the usual."""
-    new = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-    number = os.open(temporary, new, 0o600 if old is not None else 0o666)
-    try:
-        write_pieces(number, pieces)
-        os.fsync(number)
+def _open_new(folder: str, temporary: str, mode: int) -> tuple[int, bool]:
+    """A new file, open, with no more rights than `mode` from the start; and whether it has its temporary name."""
+    if hasattr(os, "O_TMPFILE") and os.path.isdir("/proc/self/fd"):  # noqa: PTH112 - by which it gets its name
+        with suppress(OSError):  # of a file system that knows no such files; what else is wrong the other way says, too
+            return os.open(folder, os.O_WRONLY | os.O_TMPFILE, mode), False
+    return os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode), True
+
+
+def _link(number: int, folder: str, name: str) -> bool:
+    """Give an open file without a name one; False where something of that name stands there already."""
+    place = os.open(folder, os.O_RDONLY)
+    try:  # only with a folder given Python lets the system follow the link
+        os.link(f"/proc/self/fd/{number}", name, src_dir_fd=place, dst_dir_fd=place)
+    except FileExistsError:
+        return False
     finally:
-        os.close(number)
-    if old is not None:
-        _path(temporary).chmod(stat.S_IMODE(old.st_mode))
+        os.close(place)
+    return True
+
+
+def _lock(number: int) -> None:
+    """Mark a file as one that somebody writes, for as long as it is open."""
+    with suppress(ImportError, OSError):  # no such locks there; then nothing is removed there either
+        import fcntl
+
+        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+
+
+def _remove_left_behind(folder: str) -> None:
+    """Remove files of this user that a process was writing which is dead; looked for once in each folder."""
+    if folder in _looked_into:
+        return
+    _looked_into.add(folder)
+    with suppress(ImportError, OSError):
+        import fcntl
+
+        for entry in os.scandir(folder):
+            if entry.name.startswith(".heun-") and len(entry.name) == 22:
+                with suppress(OSError):
+                    number = os.open(entry.path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK)
+                    try:
+                        fcntl.flock(number, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                        state = os.fstat(number)
+                        is_old = time.time() - state.st_mtime > LEFT_BEHIND
+                        if stat.S_ISREG(state.st_mode) and state.st_uid == os.geteuid() and is_old:
+                            os.unlink(entry.path)  # noqa: PTH108
+                    finally:
+                        os.close(number)
 
 
 def _path(name: str) -> Path:

@@ -1,17 +1,20 @@
 """The same work on many things, in several processes that are forked from this one.
 
 What was imported before is there in each of them: Python starts once. A process that dies takes with it what it was at,
-and nothing else: the next takes its place. Impure: processes.
+and nothing else: the next takes its place, and what the dead one was at is tried once more. Impure: processes.
 """
 
 from __future__ import annotations
 
 import os
+from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from typing import TYPE_CHECKING, Generic, TypeVar
 
+from heuncli.cli import alarm, leaving
 from heuncli.cli.leaving import Undoing
+from heuncli.errors import LimitError, Problem
 from heuncli.named_tuples import NamedTuple
 
 if TYPE_CHECKING:
@@ -47,24 +50,66 @@ def how_many(asked: int | None, things: int) -> int:
 
 
 class Died(NamedTuple):
-    """What stands for an answer whose process died: how, in words."""
+    """What stands for an answer whose process died: how, in words; exit code, negative that of a signal."""
 
     how: str
+    code: int = 0
+
+    @property
+    def is_time_up(self) -> bool:
+        """Whether the time limit ended it, at its hard end (cli/alarm.py)."""
+        return self.code == LimitError.exit_code
+
+    def problem(self, work: str, bug_hint: str) -> Problem:
+        """What is told of what was lost; work: what the process did; bug_hint: where no limit ended it."""
+        if self.is_time_up:
+            return Problem("time-limit", "the time limit was reached, and the work did not stop", hint=alarm.HINT)
+        return Problem("bug", f"the process that {work} was {self.how}, twice", hint=bug_hint)
+
+
+class SecondTries:
+    """Items, by their numbers, whose process died: each is tried once more, alone."""
+
+    def __init__(self) -> None:
+        self._waiting: deque[int] = deque()
+        self._tried: set[int] = set()
+
+    def next(self) -> int | None:
+        """The next item to try again; None where there is none."""
+        return self._waiting.popleft() if self._waiting else None
+
+    def answered(self, numbers: Sequence[int]) -> None:
+        """Forget items that are answered."""
+        self._tried.difference_update(numbers)
+
+    def lost(self, numbers: Sequence[int], died: Died) -> list[int]:
+        """Note items whose process died. Returns those that are not tried again.
+
+        These died twice; or one alone took longer than its time limit, and would take as long again.
+        """
+        if died.is_time_up and len(numbers) == 1:
+            return list(numbers)
+        twice = [number for number in numbers if number in self._tried]
+        self._tried.update(numbers)
+        self._tried.difference_update(twice)
+        self._waiting.extend(number for number in numbers if number not in twice)
+        return twice
 
 
 def each(
     work: Callable[[Item], Answer],
     items: Sequence[Item],
     jobs: int,
-    dead: Callable[[Item, str], Answer],
+    dead: Callable[[Item, Died], Answer],
     is_last: Callable[[Answer], bool] = lambda answer: False,
+    apart: bool = False,
 ) -> Iterator[Answer]:
     """The answers in the order of the items, each as soon as those before it are there.
 
-    dead: the answer for an item whose process died, from what is known of its end; is_last: whether no item behind one
-    with this answer is asked for.
+    dead: the answer for an item whose process died, twice, or at its time limit; is_last: whether no item behind one
+    with this answer is asked for; apart: in another process also where it is one alone.
     """
-    if jobs <= 1:
+    if jobs <= 1 and not (apart and forks()):
         for item in items:
             answer = work(item)
             yield answer
@@ -73,15 +118,23 @@ def each(
         return
     until = len(items)
     numbers = iter(range(len(items)))
+    again = SecondTries()
 
-    def more() -> tuple[int, Item] | None:
-        number = next(numbers, until)
-        return (number, items[number]) if number < until else None
+    def more() -> int | None:
+        number = again.next()
+        if number is None:
+            number = next(numbers, until)
+        return number if number < until else None
 
     waiting: dict[int, Answer] = {}
     done = 0
-    for (number, item), found in as_done(lambda numbered: work(numbered[1]), more, jobs):
-        waiting[number] = dead(item, found.how) if isinstance(found, Died) else found
+    for number, found in as_done(lambda number: work(items[number]), more, jobs):
+        if isinstance(found, Died):
+            if not again.lost([number], found):
+                continue
+            waiting[number] = dead(items[number], found)
+        else:
+            waiting[number] = found
         if is_last(waiting[number]):
             until = min(until, number + 1)
         while done in waiting:
@@ -102,7 +155,7 @@ def as_done(
     read from it, this ends. The processes are made as they find work, and end with this.
     """
     pool = _Pool(work, more, jobs)
-    with Undoing(pool.kill):
+    with alarm.unwatched(), Undoing(pool.kill):
         try:
             yield from pool.answers(stopped)
         finally:
@@ -130,12 +183,12 @@ class _Worker(Generic[Item, Answer]):
         with suppress(BrokenPipeError, ConnectionResetError):  # it died between two items: found while waiting
             self.pipe.send(item)
 
-    def end(self) -> str:
-        """How it died, in words."""
+    def end(self) -> Died:
+        """How it died."""
         self.process.join()
         code = self.process.exitcode or 0
         self.pipe.close()
-        return f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+        return Died(f"killed by signal {-code}" if code < 0 else f"ended with exit code {code}", code)
 
 
 def _serve(pipe: Connection, work: Callable[[Item], Answer], inherited: Sequence[Connection]) -> None:
@@ -147,6 +200,8 @@ def _serve(pipe: Connection, work: Callable[[Item], Answer], inherited: Sequence
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     for name in ("SIGTERM", "SIGHUP"):
         signal.signal(getattr(signal, name), signal.SIG_DFL)
+    leaving.undo_nothing()
+    alarm.be_silent()
     try:
         while True:
             pipe.send(work(pipe.recv()))
@@ -197,7 +252,7 @@ class _Pool(Generic[Item, Answer]):
             answer = worker.pipe.recv()
         except (EOFError, OSError):  # the latter where it died while it spoke
             self.workers.remove(worker)
-            return item, Died(worker.end())
+            return item, worker.end()
         worker.at = None
         self._employ()
         return item, answer

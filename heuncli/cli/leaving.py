@@ -31,7 +31,7 @@ def listen() -> None:
 
 def deafen() -> None:
     """No signal interrupts what is left to do."""
-    for name in LINES:
+    for name in (*LINES, "SIGALRM"):
         if hasattr(_signal, name):
             _signal.signal(getattr(_signal, name), _signal.SIG_IGN)
 
@@ -47,6 +47,11 @@ class Undoing:
 
     def __exit__(self, *_: object) -> None:
         _undone.remove(self.undo)
+
+
+def undo_nothing() -> None:
+    """In a process that was forked: what its parent has under way is its parent's to undo."""
+    _undone.clear()
 
 
 class Stopping:
@@ -110,12 +115,17 @@ def _watched() -> bool:
     return any(who is not None for who in (sys.getprofile(), sys.gettrace(), *tools))
 
 
-def _leave(number: int, frame: FrameType | None) -> None:
-    deafen()
+def leave(code: int, line: bytes) -> None:
+    """End the process at once: nothing half written is left behind, and standard error gets the line."""
     try:
         for undo in reversed(_undone):
             undo()
-        if sys.stderr is not None:  # else its number may have become that of another file
-            os.write(2, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))
+        if line and sys.stderr is not None:  # else its number may have become that of another file
+            os.write(2, line)
     finally:
-        os._exit(128 + number)
+        os._exit(code)
+
+
+def _leave(number: int, frame: FrameType | None) -> None:
+    deafen()
+    leave(128 + number, next(LINES[name] for name in LINES if getattr(_signal, name, None) == number))

@@ -28,7 +28,10 @@ from heuncli.report.text_table import TextColumn
 from heuncli.telling.envelopes import Bound
 
 MOST_CASES = 12  # told in a line each; of more those that govern
-GOVERNS = "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open"
+GOVERNS = (
+    "bold: the least and the greatest of all load cases, of magnitudes the greatest alone; none that may be open, "
+    "that is rounding, or in which all cases are alike"
+)
 PARTLY = "*"
 STEADY = "without an instant: the same at all {}, to the digits shown"
 ERRORS = "±: the error that the run states of the number, rounding included"
@@ -65,7 +68,7 @@ def _shown(of: Reported, groups: Sequence[LoadGroup], governs: Governing) -> set
     if len(of.runs) <= MOST_CASES:
         return {run.name for run in of.runs}
     bounds = [found(row.path) for group in groups for row in group.rows for found in (governs.low, governs.high)]
-    return {bound.case for bound in bounds if bound is not None}
+    return {case for bound in bounds if bound is not None for case in bound.governing} or {of.runs[0].name}
 
 
 def _hidden(of: Reported, groups: Sequence[LoadGroup], shown: set[str]) -> list[str]:
@@ -174,7 +177,7 @@ def _texts(ends: Ends, how: Style, size: float) -> tuple[str, str]:
 
 
 def _is(bound: Bound | None, run: ReportedRun) -> bool:
-    return bound is not None and bound.case == run.name
+    return bound is not None and not bound.is_rounding and run.name in bound.governing
 
 
 def _cells(

@@ -10,7 +10,7 @@ from heuncli.client_report.happenings import happening_parts
 from heuncli.client_report.histories import history_parts
 from heuncli.client_report.load_table import load_tables
 from heuncli.client_report.machine import drawing_parts, model_parts
-from heuncli.client_report.parts import Chapter, ClientReport, Part, Sentence, Verbatim
+from heuncli.client_report.parts import Chapter, ClientReport, Part, Sentence, Verbatim, has_content
 from heuncli.client_report.reported import Reported
 from heuncli.client_report.sections import section_parts
 from heuncli.client_report.trust import open_parts, trust_parts
@@ -32,8 +32,9 @@ CHAPTERS: Sequence[tuple[str, str, Callable[[Reported], list[Part]]]] = (
 
 def report_of(of: Reported) -> ClientReport:
     """The report; a chapter with nothing to tell is left out. Raises what solving raises."""
-    made = [Chapter(name, title, parts(of)) for name, title, parts in CHAPTERS]
-    return ClientReport(of.spec.title or "untitled", first_page(of), [chapter for chapter in made if chapter.parts])
+    made = [Chapter(name, title, list(filter(has_content, parts(of)))) for name, title, parts in CHAPTERS]
+    lead = list(filter(has_content, first_page(of)))
+    return ClientReport(of.spec.title or "untitled", lead, [chapter for chapter in made if chapter.parts])
 
 
 def spec_parts(of: Reported) -> list[Part]:

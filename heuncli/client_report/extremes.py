@@ -175,9 +175,14 @@ class GreatestOfCases(NamedTuple):
         return "".join(f", {part}" for part in parts)
 
 
-def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
-    """The highest of a number over all cases; None where no case knows it, or it is 0 in all."""
+def spread_of(of: Reported, path: str, name: str, *, signed: bool = False) -> GreatestOfCases | None:
+    """The highest of a number over all cases; None where no case knows it, or it is 0 in all.
+
+    signed: whether its size counts, and not its sign.
+    """
     found = {run.name: ends for run in of.runs if (ends := ends_of(run, path)) is not None}
+    if signed:
+        found = {case: _by_size(ends) for case, ends in found.items()}
     known = {case: ends for case, ends in found.items() if isinstance(ends.high.value, float)}
     if not known:
         return None
@@ -191,6 +196,14 @@ def spread_of(of: Reported, path: str, name: str) -> GreatestOfCases | None:
     steady = ends.high.place is None and is_steady(ends, how, size)
     at = "" if steady else instant_text(ends.high.at, run)
     return GreatestOfCases(name, unit, high, ends.error, how, size, place_text(ends.high.place, of.units), at)
+
+
+def _by_size(ends: Ends) -> Ends:
+    """The extremes of the size of a number with a sign: as its highest the one that is larger."""
+    low, high = ends.low, ends.high
+    if isinstance(low.value, float) and isinstance(high.value, float) and -low.value > abs(high.value):
+        return ends._replace(low=high, high=low._replace(value=-low.value))
+    return ends
 
 
 def lacking(of: Reported, path: str) -> list[str]:

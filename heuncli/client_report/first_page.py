@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from heuncli.client_report.extremes import GreatestOfCases, lacking, spread_of
+from heuncli.client_report.load_groups import joining_forces
 from heuncli.client_report.parts import Facts, Mood, Part, Sentence, some
 from heuncli.client_report.reported import Reported
 from heuncli.method_rows import row_of
@@ -126,13 +127,17 @@ def _greatest(spread: GreatestOfCases) -> float:
 
 
 def _largest(of: Reported) -> Iterator[Sentence]:
-    """The largest load of a joint, and on the foundation."""
+    """The largest load of a joint, that of all that joins bodies where it is larger, and on the foundation."""
     whole = spread_of(of, "foundation.force", "the foundation")
-    paths = {f"joints.{name}.force": name for name in of.runs[0].results.joints}
-    joints = [spread for path, name in paths.items() if (spread := spread_of(of, path, name)) is not None]
-    if joints:
-        most, known = max(joints, key=_greatest), _known(of, list(paths))
-        yield Sentence(f"Largest joint force{known}: {most.high_text()} in {most.name}{most.where}.")
+    paths = dict(joining_forces(of))
+    joints = [path for path in paths if path.startswith("joints.") and path.endswith(".force")]
+    told: GreatestOfCases | None = None
+    for what, some_paths in (("joint force", joints), ("force between bodies", list(paths))):
+        found = [spread for path in some_paths if (spread := spread_of(of, path, paths[path], signed=True)) is not None]
+        most = max(found, key=_greatest, default=None)
+        if most is not None and (told is None or most.high.value > told.high.value + told.error):
+            told, known = most, _known(of, some_paths)
+            yield Sentence(f"Largest {what}{known}: {most.high_text()} in {most.name}{most.where}.")
     if whole is not None:
         known = _known(of, ["foundation.force"])
         yield Sentence(f"Largest force on the foundation{known}: {whole.high_text()}{whole.where}.")

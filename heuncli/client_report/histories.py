@@ -54,7 +54,7 @@ def _chosen(of: Reported) -> Iterator[tuple[str, str]]:
     for quantity, most in (("force", MOST), ("moment", 1)):
         found = [(f"joints.{name}.{quantity}", bound) for name, bound in _bounds(of, quantity)]
         found.sort(key=lambda pair: -pair[1].value)
-        yield from ((path, bound.case) for path, bound in found[:most])
+        yield from ((path, (bound.governing or bound.alike)[0]) for path, bound in found[:most])
 
 
 def _bounds(of: Reported, quantity: str) -> Iterator[tuple[str, Bound]]:

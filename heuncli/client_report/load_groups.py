@@ -13,6 +13,8 @@ from heuncli.results_schema import MAGNITUDES, XYZ
 
 WHOLE = {"force": "|F|", "moment": "|M|"}  # of a vector
 TOTAL = "total"  # of the foundation
+CARRIED = frozenset({"force", "contact", "normal", "tension", "last_tension", "tight", "slack"})  # by a coupling
+FROM_OUTSIDE = frozenset({"force", "couple", "distributed"})  # loads on one body, without a counterpart
 
 
 class LoadNumber(NamedTuple):
@@ -70,6 +72,32 @@ def _rows(of: Reported, prefix: str, quantities: Sequence[str]) -> Iterator[Load
             yield LoadNumber(WHOLE[quantity], path, family, even=True, vector=path)
         elif path in numbers:
             yield LoadNumber(quantity, path, family, quantity in MAGNITUDES)
+
+
+def joining_forces(of: Reported) -> Iterator[tuple[str, str]]:
+    """The forces of all that joins bodies, each with its name: joints, drives, stops, couplings, and loads between two.
+
+    Of a coupling what it carries and what it exerts ON each body: a sheave takes both strands of its rope.
+    """
+    units = {path: number.unit for run in of.runs for path, number in run.kept.numbers.items()}
+    for path, unit in units.items():
+        kind, _, rest = path.partition(".")
+        name, _, quantity = rest.partition(".")
+        if unit != "N" or (path.rpartition(".")[0] in units and path.rpartition(".")[2] in XYZ):
+            continue
+        if kind == "joints" and quantity in ("force", "drive"):
+            yield path, name if quantity == "force" else f"the drive of {name}"
+        elif kind == "stops" and quantity == "force":
+            yield path, f"stop {name}"
+        elif kind == "couplings" and (
+            quantity in CARRIED or (quantity.startswith("on.") and quantity.endswith(".force"))
+        ):
+            where = quantity.removeprefix("on.").removesuffix(".force") if quantity.startswith("on.") else ""
+            yield path, f"coupling {name}{f' on {where}' if where else ''}"
+        elif kind == "forces" and quantity in ("force", "value"):
+            info = of.labels.forces.get(name)
+            if info is not None and info.type not in FROM_OUTSIDE:
+                yield path, f"{info.type.replace('_', ' ')} {name}"
 
 
 def without_components(group: LoadGroup) -> LoadGroup:

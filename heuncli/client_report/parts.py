@@ -81,6 +81,15 @@ class ClientReport(NamedTuple):
     chapters: Sequence[Chapter]
 
 
+def has_content(part: Part) -> bool:
+    """Whether anything stands below the heading of a part."""
+    if isinstance(part, ReportTable):
+        return bool(part.rows or part.notes)
+    if isinstance(part, Listing):
+        return bool(part.items)
+    return bool(part.rows) if isinstance(part, Facts) else True
+
+
 def grid_of(table: TextTable, caption: str | None = None) -> ReportTable:
     """A table as `heun run` prints it; caption: in the place of its heading."""
     rows = [row if isinstance(row, str) else tuple(map(ReportCell, row)) for row in table.rows]

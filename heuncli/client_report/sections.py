@@ -85,8 +85,8 @@ def _governing(of: Reported, name: str) -> GoverningCase:
         bounds = [bound for bound in (governs.low(path), governs.high(path)) if bound is not None]
         largest = max(bounds, key=lambda bound: abs(bound.value), default=None)
         sizes.append(abs(largest.value) if largest is not None else 0.0)
-        if run is None and largest is not None and largest.value:
-            run = next(one for one in of.runs if one.name == largest.case)
+        if run is None and largest is not None and largest.value and not largest.is_rounding:
+            run = next(one for one in of.runs if one.name == (largest.governing or largest.alike)[0])
     return GoverningCase(run or of.runs[0], tuple(sizes))
 
 

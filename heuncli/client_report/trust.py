@@ -17,6 +17,16 @@ MEANING = (
     "largest difference of the two, of all instants so far, and not below rounding; they hold for all numbers of a "
     "kind. They tell of the solution of the model, not of how well the model is the machine."
 )
+FOLLOWED = (
+    "Nothing is integrated: the drives leave no freedom, and every instant is solved by itself. The stated errors are "
+    "those of rounding, found by solving again from values moved by it. They tell of the solution of the model, not of "
+    "how well the model is the machine."
+)
+POSE_AT_REST = (
+    "Nothing is integrated: a pose at rest is looked for, and again ten times finer. The stated errors are those of "
+    "the pose, from the difference of the two finest, and of rounding. They tell of the solution of the model, not of "
+    "how well the model is the machine."
+)
 AT_REST = (
     "Nothing is integrated: the equations of one instant are solved, and the stated errors are those of rounding. They "
     "tell of the solution of the model, not of how well the model is the machine."
@@ -30,13 +40,19 @@ CERTAIN = "Nothing is open: the laws of rigid bodies determine every load that i
 
 def trust_parts(of: Reported) -> list[Part]:
     """What is said of each run, and the errors that it states."""
-    moved = any(run.results.work.get("steps") for run in of.runs)
-    parts: list[Part] = [Sentence(MEANING if moved else AT_REST)]
+    parts: list[Part] = [Sentence(text) for text in dict.fromkeys(map(_meaning, of.runs))]
     for run in of.runs:
         if of.has_cases:
             parts.append(Sentence(f"Case {run.told}:"))
         parts.append(Facts([line for line in heading(run.results) if line[0] not in ("heun", "model", "warning")]))
     return [*parts, _errors(of)]
+
+
+def _meaning(run: ReportedRun) -> str:
+    """Where the stated errors of a run come from."""
+    if run.study.of_one_instant:
+        return POSE_AT_REST if "rest" in run.results.model else AT_REST
+    return MEANING if run.study.history.followed_for is None else FOLLOWED
 
 
 def _errors(of: Reported) -> ReportTable:

@@ -42,21 +42,29 @@ class CoupledFit:
     """A laid-out scene on the way to a start that meets its couplings; state: where it is."""
 
     def __init__(self, scene: PreparedScene, t: float, asked: AskedRows, bodies: Iterable[int]) -> None:
-        """bodies: places in the tree of those that may change."""
-        self.scene, self.asked = scene, asked
+        """bodies: places in the tree of those whose changes count; all of them may move until others are released."""
+        self.scene, self.asked, self.t = scene, asked, t
         self.size, self.state = scene.layout.size, scene.layout.y0.copy()
         places = sorted(bodies)
-        self.freedoms = Freedoms(scene.layout, t, places)
+        self.release(places)
         self.bodies = [scene.layout.spanning.hangs[i].body for i in places]
         self.centres = np.array([body.center for body in scene.mechanism.bodies])
         self.arms = self.centres[self.bodies]
         weight = scene.layout.tables["closures"]["weight"][: len(scene.layout.rows)]
         self.weight = weight / self.size  # of gaps, and of their rates
 
+    def release(self, places: Iterable[int]) -> None:
+        """Let the freedoms of these bodies (places in the tree) change, and no others."""
+        self.freedoms = Freedoms(self.scene.layout, self.t, places)
+
     def now(self) -> tuple[MeasuredState, Assembly]:
         """What is measured at the state, and the start that it is."""
         told = self.freedoms.measured(self.state)
         return told, self.freedoms.assembly(told, self.scene.start)
+
+    def at(self, state: Array) -> Assembly:
+        """The start that another state is."""
+        return self.freedoms.assembly(self.freedoms.measured(state), self.scene.start)
 
     def lengths(self, rows: Indices) -> Array:
         """By which gaps and rates of rows are lengths [m per unit]."""
@@ -77,13 +85,29 @@ class CoupledFit:
 
     def fit_rates(self) -> Array:
         """Change the rates; what is left of the couplings' rows [m/s], (rows,) of `asked.rates`."""
+        spread, hard, soft = self._asked_of_rates()
+        step, _ = _least(spread, hard, soft, None)
+        self.state = self.freedoms.hurried(self.state, step)
+        own = self.asked.rates
+        return np.asarray(self.freedoms.measured(self.state).rates[own] * self.lengths(own))
+
+    def could_stay(self, body: int) -> bool:
+        """Whether other rates that meet all rows leave a body (spec's order) as it was; before the rates are fitted."""
+        spread, hard, soft = self._asked_of_rates()
+        k, half = self.bodies.index(body), len(spread) // 2
+        own = np.concatenate([spread[3 * k : 3 * k + 3], spread[half + 3 * k : half + 3 * k + 3]])
+        Q, R = np.linalg.qr(spread)
+        J = np.linalg.solve(R.T, np.concatenate([hard[0], soft[0], own]).T).T
+        e = np.concatenate([hard[1], soft[1], np.zeros(len(own))])
+        left = solve(J, e)[2]
+        return bool(np.abs(left).max(initial=0.0) <= tolerances.RANK * np.abs(e).max(initial=0.0))
+
+    def _asked_of_rates(self) -> tuple[Array, Rows, Rows]:
+        """What the freedoms move, and the rows of joints and of what is held, and of couplings, at the state's rates."""
         told, now = self.now()
         motion = self.freedoms.motion(self.state)
-        rows, own = self.asked.joints, self.asked.rates
-        hard = _joined([self._rows(motion, told.rates, rows), *held_rates(self.scene, now, motion)])
-        step, _ = _least(self._spread(motion, now), hard, self._rows(motion, told.rates, own), None)
-        self.state = self.freedoms.hurried(self.state, step)
-        return np.asarray(self.freedoms.measured(self.state).rates[own] * self.lengths(own))
+        hard = [self._rows(motion, told.rates, self.asked.joints), *held_rates(self.scene, now, motion)]
+        return self._spread(motion, now), _joined(hard), self._rows(motion, told.rates, self.asked.rates)
 
     # Poses
 

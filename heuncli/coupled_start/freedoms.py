@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from heuncli.mechanism.model import Assembly
-from heuncli.records import record
+from heuncli.records import record, replace
 from heuncli.response import MeasuredState, measured, unsettled
 from heuncli.results import Array, Indices
 from heuncli.shapes.rotations import cross_rows, quaternion_from_vector, quaternion_product
@@ -68,7 +68,7 @@ class Freedoms:
     def assembly(self, told: MeasuredState, start: Assembly) -> Assembly:
         """The start as it is measured."""
         x, v, R, omega = self.start_of(told)
-        return Assembly(x, R, v, omega, start.chosen, start.gap, start.moved)
+        return replace(start, position=x, rotation=R, velocity=v, angular_velocity=omega)
 
     def motion(self, state: Array) -> FreedomMotion:
         """What each freedom moves at a state."""

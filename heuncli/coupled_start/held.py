@@ -62,16 +62,28 @@ def _along(joint: Joint, now: Assembly, motion: FreedomMotion, size: float) -> R
     xb, Rb, _, _ = pose(now, joint.b)
     n, Q = pose(now, joint.a)[1] @ joint.axis, xb + Rb @ joint.q
     turning = n @ (motion.of_turn(joint.b) - motion.of_turn(joint.a))
-    sliding = n @ (motion.of_point(joint.b, Q) - motion.of_point(joint.a, Q)) / size
+    sliding = _way(joint, now) @ (motion.of_point(joint.b, Q) - motion.of_point(joint.a, Q)) / size
     return turning[None, :], sliding[None, :]
+
+
+def _way(joint: Joint, now: Assembly) -> Array:
+    """What the travel grows by as the `to` point shifts, seen from `from`, world axes (3,): the axis; of a path r'/r'^2.
+
+    """
+    R = pose(now, joint.a)[1]
+    if joint.path is None:
+        return np.asarray(R @ joint.axis)
+    slope = joint.path.at(_travel(joint, now))[1]
+    return np.asarray(R @ slope / float(slope @ slope))
 
 
 def _rates(joint: Joint, now: Assembly) -> tuple[float, float]:
     """The rate about a joint's axis, and the speed along it."""
     xa, Ra, va, wa = pose(now, joint.a)
     xb, Rb, vb, wb = pose(now, joint.b)
-    n, Q = Ra @ joint.axis, xb + Rb @ joint.q
-    return float(n @ (wb - wa)), float(n @ (vb + np.cross(wb, Q - xb) - va - np.cross(wa, Q - xa)))
+    Q = xb + Rb @ joint.q
+    v = vb + np.cross(wb, Q - xb) - va - np.cross(wa, Q - xa)
+    return float((Ra @ joint.axis) @ (wb - wa)), float(_way(joint, now) @ v)
 
 
 def _turned(joint: Joint, start: Assembly, now: Assembly) -> float:
@@ -81,9 +93,13 @@ def _turned(joint: Joint, start: Assembly, now: Assembly) -> float:
 
 
 def _travel(joint: Joint, at: Assembly) -> float:
+    """The travel; along a path on the branch that is held."""
     xa, Ra, _, _ = pose(at, joint.a)
     xb, Rb, _, _ = pose(at, joint.b)
-    return float((Ra @ joint.axis) @ (xb + Rb @ joint.q - xa - Ra @ joint.p))
+    place = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
+    if joint.path is None:
+        return float(joint.axis @ place)
+    return float(joint.path.nearest(place)) if joint.travel is None else joint.path.near(place, joint.travel)
 
 
 def _world(given: Directed, R: Array) -> Array:

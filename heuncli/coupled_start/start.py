@@ -1,7 +1,8 @@
 """The start of a scene with couplings: assembled by its joints, then changed as little as couplings ask for.
 
 A coupling of coordinates starts as it is assembled, and asks for rates alone; where it tells a pose (a rope's length, a
-sum of coordinates) it moves what nothing holds.
+sum of coordinates) it moves what nothing holds. What carries the coupled bodies moves only where these cannot meet
+their couplings by themselves.
 """
 
 from __future__ import annotations
@@ -12,10 +13,11 @@ from heuncli import tolerances
 from heuncli.coupled_start.errors import poses_do_not_fit, rates_do_not_fit, too_many
 from heuncli.coupled_start.fit import AskedRows, CoupledFit
 from heuncli.coupled_start.freedoms import Freedoms, concerned
-from heuncli.coupled_start.told import told
+from heuncli.coupled_start.released import ReleasedBodies
+from heuncli.coupled_start.told import told, unasked
 from heuncli.mechanism.model import Assembly
 from heuncli.records import replace
-from heuncli.results import Array
+from heuncli.results import Array, Indices
 from heuncli.tree.layout import Layout
 from heuncli.tree.prepare import PreparedScene, arranged
 from heuncli.tree.starts import JointStart, joint_start
@@ -49,16 +51,13 @@ def fitted(scene: PreparedScene, t: float, asked: AskedRows) -> PreparedScene:
     Raises SolveError: does-not-fit, rates-do-not-fit, too-many-together.
     """
     rows = np.concatenate([asked.poses, asked.rates]).tolist()
-    bodies = concerned(scene.layout, rows)
-    fit = CoupledFit(scene, t, asked, bodies)
-    if len(fit.freedoms.answers) > TOGETHER:
-        raise too_many(scene.layout, rows[0], len(bodies))
+    fit = CoupledFit(scene, t, asked, concerned(scene.layout, rows))
     moved = _posed(scene, fit, asked)
-    hurried = _hurried(scene, fit, asked)
+    hurried, started = _hurried(scene, fit, asked)
     if not moved and not hurried:
         return scene
     start = fit.now()[1]
-    start = replace(start, chosen=(*start.chosen, *told(scene, start)))
+    start = replace(start, chosen=(*start.chosen, *told(scene, start)), started=(*start.started, *started))
     if not moved:
         return arranged(scene.mechanism, start)
     starts = _counted(scene, fit.state, start)
@@ -70,23 +69,46 @@ def _posed(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> bool:
     limit = tolerances.OPEN_GAP
     if not len(asked.poses) or fit.gap() <= limit:
         return False
-    left = fit.fit_poses()
-    if fit.gap() > limit:
-        raise poses_do_not_fit(scene.layout, asked.poses, left)
+    released, before = ReleasedBodies(scene.layout, asked.poses), fit.state
+    while True:
+        _release(scene, fit, released, asked.poses)
+        left = fit.fit_poses()
+        if fit.gap() <= limit:
+            break
+        if not released.widen(asked.poses[np.abs(left) > limit * scene.layout.size]):
+            raise poses_do_not_fit(scene.layout, asked.poses, left)
+        fit.state = before
     fit.polish(limit)
     return True
 
 
-def _hurried(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> bool:
-    """Whether rates had to change for the rows; they have."""
+def _hurried(scene: PreparedScene, fit: CoupledFit, asked: AskedRows) -> tuple[bool, tuple[str, ...]]:
+    """Whether rates had to change for the rows; they have. And sentences on what moves though no rate asks for it."""
     limit = tolerances.OPEN_RATE * fit.speed()
     before = fit.now()[0].rates[asked.rates] * fit.lengths(asked.rates)
     if not np.any(np.abs(before) > limit):
-        return False
-    left = fit.fit_rates()
-    if np.any(np.abs(left) > tolerances.OPEN_RATE * max(fit.speed(), limit / tolerances.OPEN_RATE)):
-        raise rates_do_not_fit(scene.layout, asked.rates, left)
-    return True
+        return False, ()
+    released, state = ReleasedBodies(scene.layout, asked.rates), fit.state
+    while True:
+        _release(scene, fit, released, asked.rates)
+        left = fit.fit_rates()
+        is_open = np.abs(left) > tolerances.OPEN_RATE * max(fit.speed(), limit / tolerances.OPEN_RATE)
+        if not np.any(is_open):
+            break
+        if not released.widen(asked.rates[is_open]):
+            raise rates_do_not_fit(scene.layout, asked.rates, left)
+        fit.state = state
+    fitted_state, fit.state = fit.state, state
+    started = unasked(scene, fit, fitted_state, released)
+    fit.state = fitted_state
+    return True, started
+
+
+def _release(scene: PreparedScene, fit: CoupledFit, released: ReleasedBodies, rows: Indices) -> None:
+    """Let the released bodies move. Raises SolveError: too-many-together."""
+    fit.release(released.places)
+    if len(fit.freedoms.answers) > TOGETHER:
+        raise too_many(scene.layout, int(rows[0]), len(released.places))
 
 
 def _counted(scene: PreparedScene, state: Array, start: Assembly) -> tuple[JointStart, ...]:

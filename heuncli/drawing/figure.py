@@ -191,13 +191,22 @@ Item = (
 
 
 class Scaling(NamedTuple):
-    """An axis: what it tells, with its unit, and its ends; named: places that have names in place of numbers."""
+    """An axis: what it tells, with its unit, and its ends; named: places that have names in place of numbers.
+
+    unlabelled: whether another panel shows the label; the numbers along it are the same.
+    """
 
     label: str
     low: float
     high: float
     logarithmic: bool = False
     named: tuple[tuple[float, str], ...] = ()
+    unlabelled: bool = False
+
+    @property
+    def shown_label(self) -> str:
+        """The label, where this panel shows it."""
+        return "" if self.unlabelled else self.label
 
     def at(self, value: float) -> float:
         """Where a value stands, 0 to 1; beyond the ends beyond these."""
@@ -225,7 +234,7 @@ class Panel(NamedTuple):
 
 def over_one_axis(panels: Sequence[Panel]) -> list[Panel]:
     """Panels under each other whose axes across are one, which the last of them names."""
-    return [*(panel._replace(x=panel.x._replace(label="")) for panel in panels[:-1]), *panels[-1:]]
+    return [*(panel._replace(x=panel.x._replace(unlabelled=True)) for panel in panels[:-1]), *panels[-1:]]
 
 
 class Figure(NamedTuple):

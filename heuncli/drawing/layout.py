@@ -77,7 +77,7 @@ def laid_out(figure: Figure, width: float = WIDTH) -> Picture:
         drawn, without_words = _panel(panel, box, width)
         shapes += drawn
         told += without_words
-        y = box.bottom + (UNDER if panel.x.label else BETWEEN)
+        y = box.bottom + (UNDER if panel.x.shown_label else BETWEEN)
     notes = [*figure.notes, *left_out(told)]
     y += 6.0 if notes else 0.0
     for note in notes:
@@ -166,7 +166,7 @@ def _axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
         is_zero = _is_zero(value, box.across)
         (axes if is_zero else grid).append(Line(((x, box.top), (x, box.bottom)), GREY if is_zero else FAINT, 0.8))
         axes.append(Line(((x, box.bottom), (x, box.bottom + 4.0)), GREY, 0.8))
-        if box.across.label:
+        if box.across.shown_label:
             axes.append(Text(x, box.bottom + 16.0, shown(text), SMALL, "middle"))
     for value, text in ticks(box.up, most[1]):
         y = box.y(value)
@@ -175,9 +175,9 @@ def _axes(box: PanelBox) -> tuple[list[Shape], list[Shape]]:
         axes.append(Text(box.left - 7.0, y + 4.0, shown(text), SMALL, "end"))
     corners = ((box.left, box.top), (box.right, box.top), (box.right, box.bottom), (box.left, box.bottom))
     axes.append(Line((*corners, corners[0]), BLACK, 0.8))
-    if box.across.label:
+    if box.across.shown_label:
         middle = (box.left + box.right) / 2.0
-        axes.append(Text(middle, box.bottom + 34.0, shown(box.across.label), NAME, "middle"))
+        axes.append(Text(middle, box.bottom + 34.0, shown(box.across.shown_label), NAME, "middle"))
     if box.up.label:
         at = max(box.left - 64.0, 16.0), (box.top + box.bottom) / 2.0
         axes.append(Text(*at, shown(box.up.label), NAME, "middle", turned=True))

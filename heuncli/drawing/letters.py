@@ -164,10 +164,10 @@ def _below(panel: Panel, canvas: Canvas) -> list[str]:
     axis = "".join(cross if k in places else rule for k in range(canvas.columns))
     corner = "└" if canvas.look.braille else "+"
     lines = [f"{'':{LABEL}} {corner}{axis}"]
-    if not panel.x.label:
+    if not panel.x.shown_label:
         return lines
-    middle = max(0, (canvas.columns - len(panel.x.label)) // 2)
-    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.label)}"]
+    middle = max(0, (canvas.columns - len(panel.x.shown_label)) // 2)
+    return [*lines, _placed(places, canvas), f"{'':{LABEL}}  {'':{middle}}{shown(panel.x.shown_label)}"]
 
 
 def _placed(places: Mapping[int, str], canvas: Canvas) -> str:

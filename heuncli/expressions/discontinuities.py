@@ -11,19 +11,22 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem
 from heuncli.expressions.programs import KNOT, OPS, VAR, Code, Expression, Pack, Switch, TableFunction
 from heuncli.records import record
+from heuncli.results import Array, Mask
 
 COARSEST, FINEST = 1 << 12, 1 << 20  # cells of the grids on which branches are looked for
 CELLS_PER_CHANGE = 16  # a grid with fewer is not fine enough to trust
 FIRST_CELLS = 256  # of a stretch looked at first
-MOST_EQUAL = 4  # doubles before a change of branch at which rounding makes the operands equal
+MOST_EQUAL = 1024  # doubles before a change of branch at which rounding may make the operands equal
 LOOKED_AT = 1000  # equal parts of a run, at whose ends the sign of a value is looked at
 MOST_OPEN = 1 << 13  # stretches open at once; margins that are zero but for rounding have as many as there are doubles
 OF_TIME = (VAR, 0)  # the program that is the time itself
-PERIODIC = 2  # kind of a table that is
+HELD, PERIODIC = 1, 2  # kinds of tables: held beyond their ends, or going on
 RISING = frozenset(OPS[name] for name in ("sign", "step", "lt", "le", "gt", "ge"))  # rise or fall with their margin
 Decide = Callable[[list[float]], list[float]]
 Enclose = Callable[[list[float], list[float]], Sequence[Sequence[float]]]
@@ -55,14 +58,41 @@ def one_sided_limits(instants: Sequence[float]) -> list[tuple[float, float]]:
     return limits
 
 
+def beyond(last: float) -> float:
+    """An instant behind the end of a run, up to which its last discontinuity may reach by rounding."""
+    return last * (1.0 + 2.0 * MOST_EQUAL * tolerances.EPS)
+
+
+def breaks_within(value: Expression, last: float) -> list[float]:
+    """The discontinuities within (0, last], ascending, as `discontinuities` tells them.
+
+    One that stands at the end of the run is told whole, also where by rounding its new branch begins just behind: a run
+    that ends at a jump tells what is after it, whichever way the jump is written. It is left out where there is no
+    value behind, as behind the end of a table.
+    """
+    if not last > 0.0:
+        return []
+    instants = discontinuities(value, 0.0, beyond(last))
+    if not instants or instants[-1] <= last:
+        return instants
+    before, after = one_sided_limits(instants)[-1]
+    inside = [t for t in instants if t <= before]
+    return inside if before >= last or _ends_between(value, before, after) else instants
+
+
+def _ends_between(value: Expression, before: float, after: float) -> bool:
+    """Whether a value has a number at the one instant and none at the other; what it depends on besides is taken as 1."""
+    there = [math.isfinite(value.value(t, [1.0] * len(value.uses))) for t in (before, after)]
+    return there[0] and not there[1]
+
+
 def changes(value: Expression, last: float) -> list[tuple[float, float]]:
     """The last instant before and the first after each change of branch within the run, not what is at 0 alone."""
-    instants = discontinuities(value, 0.0, last) if last > 0.0 else []
-    return [(before, after) for before, after in one_sided_limits(instants) if before > 0.0]
+    return [(before, after) for before, after in one_sided_limits(breaks_within(value, last)) if before > 0.0]
 
 
 def jumps(value: Expression, last: float, order: int = 0) -> list[tuple[float, float, float, float]]:
-    """Where a value jumps within the run, or its derivative of an order: the instants before and behind, and limits."""
+    """Where a value jumps within (0, last], or its derivative of an order: the instants before and behind, and limits."""
     found = []
     for before, after in changes(value, last):
         first, then = value.derivatives(before)[order], value.derivatives(after)[order]
@@ -100,30 +130,77 @@ def _changes(expression: Expression, switch: Switch, t0: float, t1: float) -> li
 
 
 def _knots(table: TableFunction, t0: float, t1: float) -> list[float]:
-    """Where a table of the time itself goes from piece to piece: at its points; the last one belongs to the last piece.
+    """Where a table of the time itself goes from piece to piece: at its points.
 
+    The last one is computed on the last piece. Where the table is held beyond, what is held begins there.
     These are the doubles that a search finds, to the last bit; of a million of them it takes minutes.
     """
     inner = table.x[bisect_right(table.x, t0) : bisect_left(table.x, t1)]
-    ends = {math.nextafter(table.x[-1], math.inf)}
-    return [t for t in (*(t for t in inner if t < table.x[-1]), *ends) if t0 < t < t1]
+    last = table.x[-1]
+    ends = {last, math.nextafter(last, math.inf)} if table.kind == HELD else {math.nextafter(last, math.inf)}
+    return [t for t in (*(t for t in inner if t < last), *sorted(ends)) if t0 < t < t1]
 
 
 def _edges(expression: Expression, switch: Switch, changes: Sequence[float]) -> list[float]:
-    """The instants just before changes of branch at which the margin is zero: min(t, 1) keeps t at t = 1 itself.
+    """The instants just before changes of branch at which rounding cannot tell the old branch from the new one.
 
-    There the old branch ends, not at the next double. Together with it they are one discontinuity, at which the limits
-    from either side are those before and after the edge, whichever branch the edge belongs to. By rounding the margin
-    of min(100*t, 5) is zero at several doubles.
+    min(t, 1) is computed as t at t = 1 itself, a table that falls to one of its points is computed on the piece above,
+    and min(3*t, 0.9) is 3*t at t = 0.3, for 3*0.3 is rounded down. There the old branch ends, not at the next double.
+    Together with the change they are one discontinuity, at which the limits from either side are those before and
+    after, whichever branch is computed between.
     """
-    if switch.margin is None:
-        return []
-    margin, edges, ends = _at_instants(expression, switch.margin), list[float](), list(changes)
+    may_be = _nearness(expression, switch)
+    ends, which = np.array(changes), np.arange(len(changes))
+    rows: dict[int, list[float]] = {}
     for _ in range(MOST_EQUAL):
-        before = [math.nextafter(t, -math.inf) for t in ends]
-        ends = [t for t, value in zip(before, margin(before), strict=True) if value == 0.0]
-        edges += ends
-    return edges
+        if not len(ends):
+            break
+        ends = np.nextafter(ends, -np.inf)
+        near = may_be(ends)
+        ends, which = ends[near], which[near]
+        for k, t in zip(which.tolist(), ends.tolist(), strict=True):
+            rows.setdefault(k, [changes[k]]).append(t)
+    return [t for row in rows.values() for t in _from_the_shortest(row)]
+
+
+def _from_the_shortest(instants: Sequence[float]) -> list[float]:
+    """Of descending instants between which rounding cannot tell those behind the one that is written most briefly.
+
+    That one is the instant which a user means: 1, and not 0.9999999999999999.
+    """
+    k = min(range(len(instants)), key=lambda i: (len(repr(instants[i])), -i))
+    return list(instants[1 : k + 1])
+
+
+def _nearness(expression: Expression, switch: Switch) -> Callable[[Array], Mask]:
+    """Whether at instants (n,) a branch may change, as far as rounding can tell."""
+    margin = switch.decision[:-4] if switch.margin is None else switch.margin
+    enclose = _over_stretches(expression, margin)
+
+    def bounds(times: Array) -> tuple[Array, Array]:
+        low, high, *_ = enclose(times.tolist(), times.tolist())
+        return np.asarray(low), np.asarray(high)
+
+    if switch.margin is not None:
+        return lambda times: (lambda low, high: (low <= 0.0) & (high >= 0.0))(*bounds(times))
+    table = expression.tables[switch.decision[-3]]
+    return lambda times: _meets_points(table, *bounds(times))
+
+
+def _meets_points(table: TableFunction, low: Array, high: Array) -> Mask:
+    """Whether stretches (n,) from low to high of a table's argument hold a point at which its piece changes.
+
+    At the ends of a table that ends there is nothing beyond that could be told there.
+    """
+    x = np.frombuffer(table.x)
+    if table.kind == PERIODIC:
+        turned = table.numbers[0] * np.floor((low - x[0]) / table.numbers[0])
+        rounding = 2.0 * tolerances.EPS * (np.abs(low) + np.abs(turned))
+        low, high = low - turned - rounding, high - turned + rounding
+        x = np.append(x, x[1] + table.numbers[0])  # behind the last point, which is the first one
+    elif table.kind != HELD:
+        x = x[1:-1]
+    return np.asarray(np.searchsorted(x, low, side="left") < np.searchsorted(x, high, side="right"))
 
 
 @record

@@ -14,7 +14,7 @@ from collections.abc import Iterator, Sequence
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SpecError
-from heuncli.expressions.discontinuities import discontinuities
+from heuncli.expressions.discontinuities import discontinuities, one_sided_limits
 from heuncli.expressions.programs import CONST, INTEGRAL, OPS, VAR, Code, Expression
 from heuncli.kernel.choose import enclosure, expressions, jets
 from heuncli.records import replace
@@ -65,7 +65,8 @@ def begun_at(value: Expression, start: float) -> Expression:
 
 def pieces_of(rate: Expression, last: float) -> tuple[list[float], list[float]]:
     """The knots, one more than pieces, and the integral at the beginning of each piece; nan where there is none."""
-    ends = [*discontinuities(rate, 0.0, last), last] if last > 0.0 else [1.0]
+    sides = one_sided_limits(discontinuities(rate, 0.0, last)) if last > 0.0 else []
+    ends = [*(t for pair in sides for t in pair if 0.0 < t < last), last if last > 0.0 else 1.0]
     fine = Fineness(rate, last)
     knots, sums = [0.0], [0.0]
     lost = 0.0  # what rounding of the sum left out

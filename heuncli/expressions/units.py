@@ -97,8 +97,11 @@ UNITS: dict[str, tuple[float, Dimension]] = {
     "rpm": (2.0 * pi / 60.0, RATE),
     "N": (1.0, FORCE),
     "mN": (1e-3, FORCE),
+    "daN": (1e1, FORCE),
     "kN": (1e3, FORCE),
     "MN": (1e6, FORCE),
+    "gf": (1e-3 * STANDARD_GRAVITY, FORCE),
+    "kgf": (STANDARD_GRAVITY, FORCE),
     "lbf": (POUND * STANDARD_GRAVITY, FORCE),
     "Nm": (1.0, MOMENT),
     "kNm": (1e3, MOMENT),
@@ -122,14 +125,13 @@ SPELLINGS = {
     "°": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad", "µm": "um", "μm": "um",
     "µs": "us", "μs": "us", "sec": "s", "second": "s", "seconds": "s", "minute": "min", "hour": "h", "meter": "m",
     "metre": "m", "inch": "in", "U/min": "rpm", "L": "l", "newton": "N", "kilogram": "kg", "turn": "rev",
+    "kp": "kgf",
 }  # fmt: skip
 HINTS = {
     "Hz": "as an angular velocity write 2*pi*50 for 50 turns a second, or 3000 rpm",
     "t": "a thousand kilograms are '1 tonne'; t is the time: write 2*t for a multiple of it",
     "grad": "a degree is deg",
     "Grad": "a degree is deg",
-    "kgf": "write the force in N",
-    "kp": "write the force in N",
 }
 
 TOKEN = re.compile(r"\s*(?:(\*\*|[*·⋅×/^()])|([+-]?\d+)|([^\W\d_²³⁴]+|°)|([²³⁴]))")

@@ -10,6 +10,7 @@ from heuncli.drawing.as_file import as_file, form_of
 from heuncli.drawing.layout import laid_out
 from heuncli.drawing.picture import Picture, svg
 from heuncli.errors import Problem, UsageError
+from heuncli.in_python.arguments import FILE, check_arguments
 from heuncli.pictures.courses import Pictured
 from heuncli.pictures.histories import history
 from heuncli.study.ask.measure import MeasureRequest
@@ -31,6 +32,7 @@ class Diagram:
 
     def save(self, file: str | os.PathLike[str]) -> None:
         """Write it by the name's end: .svg, or .png or .pdf by matplotlib. Raises UsageError, OSError."""
+        check_arguments(("file", file, FILE), optional=False)
         name = os.fspath(file)
         Path(name).write_bytes(as_file(self._picture, form_of(name, "save")))
 

@@ -41,7 +41,7 @@ def source_of(spec: SpecGiven | None, text: str | None) -> tuple[str, str | Sour
         if text is None:
             raise _unclear("no spec is given", "a path, a mapping, or text=YAML")
         return TEXT, text
-    name = os.fspath(spec)
+    name = os.fspath(spec) if isinstance(spec, str | os.PathLike) else None
     if not isinstance(name, str):
         raise _unclear(f"{type(spec).__name__} is no path", "a path, a mapping, or text=YAML")
     if "\n" in name and text is None:

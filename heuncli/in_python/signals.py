@@ -12,6 +12,7 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from heuncli.errors import Problem, SpecError, UsageError
 from heuncli.foreign_text import shown
+from heuncli.in_python.arguments import NUMBERS, check_arguments
 from heuncli.in_python.asked_run import AskedRun, UnknownPath, distinct
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.series import component_names
@@ -179,6 +180,7 @@ class Signal(NDArrayOperatorsMixin):
         if not self._found.timed:
             message = f"at: {self.path} has no instants"
             raise UsageError(Problem("bad-option", message, hint=f'its numbers are study["{self.path}"].values'))
+        check_arguments(("times", times, NUMBERS), optional=False)
         asked, once = distinct(times)
         if not len(once):
             return np.zeros((*asked.shape, *self.computed.shape[1:]))

@@ -12,6 +12,17 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
+from heuncli.in_python.arguments import (
+    FILE,
+    NUMBER,
+    NUMBER_OR_TEXT,
+    NUMBERS,
+    TEXT,
+    TEXTS,
+    TRUTH,
+    WHOLE,
+    check_arguments,
+)
 from heuncli.in_python.asked_run import AskedRun, distinct
 from heuncli.in_python.warned import warn
 from heuncli.results import Array, Results
@@ -49,6 +60,8 @@ class Solved(Mapping[str, "Signal"]):
         """The numbers at a path, such as "joints.main.force.z". Raises UnknownPath."""
         from heuncli.in_python.signals import signal_at
 
+        if not isinstance(path, str):
+            return signal_at(self._run, path)  # refused there
         if path not in self._signals:
             self._signals[path] = signal_at(self._run, path)
         return self._signals[path]
@@ -69,6 +82,7 @@ class Solved(Mapping[str, "Signal"]):
         """The paths of all numbers, or of those under the words with which a path begins: "joints.main"."""
         from heuncli.in_python.signals import paths_of
 
+        check_arguments(("under", under, TEXT), optional=False)
         return [path for path in paths_of(self.results) if not under or f"{path}.".startswith(f"{under}.")]
 
     def _ipython_key_completions_(self) -> list[str]:
@@ -130,6 +144,7 @@ class Solved(Mapping[str, "Signal"]):
 
         Extremes are those between the samples, too, up to the horizon; nan is open, or not claimed. Raises UsageError.
         """
+        check_arguments(("words", words, TEXT), optional=False)
         return self._run.measure(words)
 
     def at(self, times: float | Sequence[float] | Array) -> Solved:
@@ -137,6 +152,7 @@ class Solved(Mapping[str, "Signal"]):
 
         Raises UsageError for instants outside of the run.
         """
+        check_arguments(("times", times, NUMBERS), optional=False)
         return Solved(self._run.told_at(distinct(times)[1]))
 
     def collective(
@@ -157,6 +173,9 @@ class Solved(Mapping[str, "Signal"]):
         """
         from heuncli.telling.collectives import collective
 
+        check_arguments(("path", path, TEXT), ("slopes", slopes, NUMBERS), ("bins", bins, WHOLE), optional=False)
+        check_arguments(("repeat", repeat, WHOLE), ("closed", closed, TRUTH), optional=False)
+        check_arguments(("cycles", cycles, NUMBER))
         of = tuple(np.atleast_1d(np.asarray(slopes, dtype=np.float64)).tolist())
         with self._run.asking():
             return collective(self.study, path, slopes=of, cycles=cycles, bins=bins, repeat=repeat, closed=closed)
@@ -171,6 +190,7 @@ class Solved(Mapping[str, "Signal"]):
         from heuncli.telling.asked_instants import parse
         from heuncli.telling.asked_values import choice
 
+        check_arguments(("body", body, TEXT), ("at", at, NUMBER_OR_TEXT), optional=False)
         choice("load_cases", body, list(self.spec.bodies))
         with self._run.asking():
             return gathered(self.study, body, parse(str(at)))
@@ -202,6 +222,7 @@ class Solved(Mapping[str, "Signal"]):
         """
         from heuncli.in_python.told import text_of
 
+        check_arguments(("units", units, TEXT), ("only", only, TEXTS))
         with self._run.asking():
             return text_of(self.study, self._run.instants, units, only)
 
@@ -214,6 +235,7 @@ class Solved(Mapping[str, "Signal"]):
         """
         from heuncli.in_python.frames import frame_of
 
+        check_arguments(("units", units, TRUTH), ("paths", paths, TEXTS), optional=False)
         return frame_of(self._run, [self[path] for path in paths or self.paths()], units, named=bool(paths))
 
     def plot(self, *paths: str, over: str | None = None, units: str | None = None) -> Diagram:
@@ -223,6 +245,7 @@ class Solved(Mapping[str, "Signal"]):
         """
         from heuncli.in_python.diagrams import diagram_of
 
+        check_arguments(("paths", paths, TEXTS), ("over", over, TEXT), ("units", units, TEXT))
         with self._run.asking():
             return diagram_of(self.study, paths, over, units)
 
@@ -230,6 +253,7 @@ class Solved(Mapping[str, "Signal"]):
         """The results into a file, by its ending: .json or .csv. Raises UsageError, OSError."""
         from heuncli.in_python.told import write_results
 
+        check_arguments(("file", file, FILE), optional=False)
         write_results(file, {".json": self.to_json, ".csv": self.to_csv})
 
     def __str__(self) -> str:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from heuncli.expressions.discontinuities import discontinuities
+from heuncli.expressions.discontinuities import breaks_within
 from heuncli.mechanism.model import Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
@@ -84,8 +84,11 @@ def just_after(t: float) -> float:
     return math.nextafter(t, math.inf)
 
 
-def discontinuities_of(mechanism: Mechanism, t0: float, t1: float) -> list[float]:
-    """Instants in (t0, t1) of blows given a time, or where a load, a drive or a derivative of one is discontinuous."""
+def discontinuities_of(mechanism: Mechanism, last: float) -> list[float]:
+    """Instants in (0, last] of blows given a time, or where a load, a drive or a derivative of one is discontinuous.
+
+    Of a discontinuity at the end of the run also the instants behind, up to the first at which the new branch holds.
+    """
     expressions = set(mechanism.expressions())
-    blows = {blow.time for blow in mechanism.blows if blow.when is None and t0 < blow.time < t1}
-    return sorted({t for e in expressions if e.time_dependent for t in discontinuities(e, t0, t1)} | blows)
+    blows = {blow.time for blow in mechanism.blows if blow.when is None and 0.0 < blow.time < last}
+    return sorted({t for e in expressions if e.time_dependent for t in breaks_within(e, last)} | blows)

@@ -2,7 +2,8 @@
 
 A program runs on jets (value, first and second derivative) as evaluator.py runs it on numbers, by the chain rule of
 each operation. `jet` carries the derivatives in time along: those of the chosen branches; at a jump or kink they are
-those of the piece that begins there. `slope` is the first derivative along any direction of the variables.
+those of the piece that begins there, which the derivatives of what is equal tell. `slope` is the first derivative along
+any direction of the variables, on the branches that `value` takes.
 """
 
 from __future__ import annotations
@@ -123,11 +124,17 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
             x = constant(programs.constants[k]) if op == CONST else moving(programs, k, t, slopes)
         elif op <= MAX:
             height -= 1
-            x = jet_of_two(op, jets[height], x)
+            if slopes or op < MIN or jets[height].value != x.value:
+                x = jet_of_two(op, jets[height], x)
+            elif (onward(less(x, jets[height])) < 0.0) != (op == MIN):
+                x = jets[height]
         elif op <= SQRT:
-            x = jet_of_one(op, x, k)
+            if slopes or x.value != 0.0 or op < ABS or op > STEP:
+                x = jet_of_one(op, x, k)
+            else:
+                x = jet_behind_zero(op, x)
         elif op <= KNOT:
-            x = jet_of_table(op, programs.tables[k], table_at(programs, at, k), x)
+            x = jet_of_table(op, programs.tables[k], table_at(programs, at, k), x, not slopes)
             at += 1
         elif op == JUMP:
             at += k
@@ -143,6 +150,8 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
             at = end
         elif op != HOLD:
             f: Jet = constant(compare(op, jets[height - 1].value, x.value))
+            if not slopes and jets[height - 1].value == x.value:
+                f = constant(compare(op, onward(less(jets[height - 1], x)), 0.0))
             height -= 1 - k
             if k == 1:  # the right operand stays above
                 jets[height - 1] = f
@@ -154,6 +163,27 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
             height -= takes_two(op) if op < LT or programs.code[at].argument == 0 else 0
             at += 2 if op == TABLE or op == KNOT else 1
     return x
+
+
+def less(a: Jet, b: Jet) -> Jet:
+    """a - b."""
+    return Jet(a.value - b.value, a.rate - b.rate, a.second - b.second)
+
+
+def onward(u: Jet) -> cython.double:
+    """A number of the sign that a value has just behind its instant, as far as its derivatives tell."""
+    if u.value != 0.0 or u.rate != u.rate:
+        return u.value
+    if u.rate != 0.0 or u.second != u.second:
+        return u.rate
+    return u.second
+
+
+def jet_behind_zero(op: cython.int, u: Jet) -> Jet:
+    """|u|, its sign or step just behind an instant at which u is zero."""
+    if op == ABS:
+        return Jet(u.value, -u.rate, -u.second) if onward(u) < 0.0 else u
+    return constant(piecewise(op, onward(u), 0))
 
 
 def moving(programs: cython.pointer[Programs], k: cython.int, t: cython.double, slopes: cython.p_double) -> Jet:
@@ -384,18 +414,35 @@ def jet_of_exponential(op: cython.int, u: Jet) -> Jet:
     return chain(u, f, df, -df * df / f if f > 0.0 else NAN)
 
 
-def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet) -> Jet:
-    """The table at u, or the number of its piece there; beyond ends that are held it stands still."""
+def jet_of_table(op: cython.int, c: cython.p_double, table: Table, u: Jet, is_behind: cython.bint) -> Jet:
+    """The table at u, or the number of its piece there; beyond ends that are held it stands still.
+
+    is_behind: at a point between pieces on the one that u comes to, else on the one that begins there.
+    """
     if op == KNOT:
         return constant(piece_counted(c, table, u.value))
     inside: cython.double = in_range(c, table, u.value)
     if inside != inside:
         return constant(NAN)
     number: cython.int = piece(c, table, inside)
+    way: cython.double = 0.0
+    if is_behind:
+        way = onward(Jet(0.0, u.rate, u.second))
+    stands: cython.bint = table.outside == EXTENDED and inside != u.value
+    if way < 0.0 and inside == c[table.knots + number]:
+        if number > 0:
+            number -= 1
+        elif table.outside == PERIODIC:
+            number = table.pieces - 1
+            inside = c[table.knots + table.pieces]
+        else:
+            stands = table.outside == EXTENDED
+    elif way > 0.0 and inside == c[table.knots + table.pieces]:
+        stands = table.outside == EXTENDED
     h: cython.double = inside - c[table.knots + number]
     i: cython.Py_ssize_t = table.coefficients + 4 * number
     f: cython.double = ((c[i + 3] * h + c[i + 2]) * h + c[i + 1]) * h + c[i]
-    if table.outside == EXTENDED and inside != u.value:
+    if stands:
         return constant(f)
     return chain(u, f, (3.0 * c[i + 3] * h + 2.0 * c[i + 2]) * h + c[i + 1], 6.0 * c[i + 3] * h + 2.0 * c[i + 2])
 

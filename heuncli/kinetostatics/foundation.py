@@ -6,19 +6,28 @@ s and M_s act ON the foundation; k is what is applied from outside: weight, forc
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.joint_kinds import JOINTS
 from heuncli.kinetostatics.actions import Action
 from heuncli.kinetostatics.bodies import BodyStates
 from heuncli.kinetostatics.reactions import in_plane
-from heuncli.mechanism.model import Mechanism
+from heuncli.mechanism.model import GROUND, JointLoad, Mechanism
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Block, Mask
 from heuncli.shapes.by_component import cross, instants_first, turned
 from heuncli.shapes.rotations import cross_rows
+
+ElementKeys = Mapping[tuple[str, str], str]  # of `foundation.elements`, by block of the spec and name
+BLOCK_OF = {
+    "load": "forces",
+    "drive": "drives",
+    "stop": "stops",
+    "coupling": "couplings",
+}  # of a spec, by kind of action
 
 
 def inertia_loads(mechanism: Mechanism, states: BodyStates) -> tuple[Array, Array]:
@@ -58,7 +67,7 @@ def foundation(mechanism: Mechanism, states: BodyStates, actions: Sequence[Actio
     weight = np.array([b.mass for b in mechanism.bodies])[:, None] * mechanism.gravity
     force, moment = total(states, weight - ma, spin, actions, about)
     standing: Block = {"supports": {}, "elements": {}}
-    for (kind, name), on in on_ground(actions).items():
+    for (kind, name), on in on_ground(mechanism, actions).items():
         where = {"point": on.about.copy()} if kind == "elements" else {}
         standing[kind][name] = {"force": on.force, "moment": on.moment} | where
     orbital = cross_rows(states.centre - about, ma).sum(axis=1)
@@ -88,19 +97,54 @@ class OnGround(NamedTuple):
         return OnGround(self.force + own.force, moment, self.about)
 
 
-def on_ground(actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
-    """What stands on the ground, loads before joints: ("supports", joint), or ("elements", force or drive)."""
+def on_ground(mechanism: Mechanism, actions: Sequence[Action]) -> dict[tuple[str, str], OnGround]:
+    """What stands on the ground: ("supports", joint), or ("elements", the key of a force, drive, stop or coupling)."""
     found: dict[tuple[str, str], OnGround] = {}
+    keys = element_keys(mechanism)
     for action in actions:
         on = action.on_ground()
         if on is None or action.from_ is None:
             continue
-        key = ("supports" if action.kind == "joint" else "elements", action.name)
-        if action.kind == "drive" and key in found:  # a force may have the same name
-            key = ("elements", f"drives.{action.name}")
+        key = ("supports", action.name) if action.kind == "joint" else ("elements", element_key(keys, action))
         own = OnGround(*on)
         found[key] = own if key not in found else found[key].with_another(own)
     return found
+
+
+def element_keys(mechanism: Mechanism) -> ElementKeys:
+    """The keys in `foundation.elements` of what stands on the ground, by its block in the spec and its name.
+
+    The key is the name. Where a force, a drive or a coupling have one name, the later of them has its block before it:
+    `drives.NAME`, `couplings.NAME`.
+    """
+    grounded = {k for k, joint in enumerate(mechanism.joints) if GROUND in (joint.a, joint.b)}
+    standing = [
+        (mechanism.block_of(load), load.name)
+        for load in mechanism.loads
+        if (
+            load.joint in grounded
+            if isinstance(load, JointLoad)
+            else GROUND in (getattr(load, "a", 0), getattr(load, "b", 0))
+        )
+    ]
+    drives = ((joint.drive, JOINTS[joint.kind]) for k, joint in enumerate(mechanism.joints) if k in grounded)
+    standing += [("drives", drive.name) for drive, kind in drives if drive is not None and not kind.keeps_distance]
+    standing += [("stops", stop.name) for stop in mechanism.stops if stop.joint in grounded]
+    standing += [("couplings", own.name) for own in mechanism.couplings if GROUND in own.ends]
+    keys: dict[tuple[str, str], str] = {}
+    taken: dict[str, str] = {}
+    for block, name in standing:
+        owner = taken.setdefault(name, block)
+        keys[block, name] = name if owner == block else f"{block}.{name}"
+    return keys
+
+
+def element_key(keys: ElementKeys, action: Action) -> str:
+    """The key of an action on the ground; a load may be its coupling's own."""
+    block = BLOCK_OF[action.kind]
+    if block == "forces" and (block, action.name) not in keys:
+        block = "couplings"
+    return keys.get((block, action.name), action.name)
 
 
 def largest_force(mechanism: Mechanism, s: Array, ma: Array, actions: Sequence[Action]) -> float:

@@ -164,7 +164,7 @@ def foundation_shares(
     parts: dict[tuple[str, ...], Block] = {}
     inner = [action for action in shares.applied if action.from_ is not None]
     standing = [*(alone(shares, action) for action in inner), *joint_actions(shares.joints)]
-    for keys, on in on_ground([*standing, *coupling_actions(shares.held)]).items():
+    for keys, on in on_ground(mechanism, [*standing, *coupling_actions(shares.held)]).items():
         force, moment = force + on.force, moment + cross_rows(on.about - about, on.force) + on.moment
         parts[keys] = shares.by_name({"force": on.force, "moment": on.moment})
     if mechanism.planar:

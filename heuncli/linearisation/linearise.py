@@ -88,6 +88,24 @@ def linearised(layout: Layout, t: float, state: Array, holding: Array | None = N
     )
 
 
+def motion_slopes(layout: Layout, t: float, law: Linearised, holding: Array | None = None) -> tuple[Array, Array]:
+    """What small displacements of the tree's freedoms change, at fixed rates, in tree order and world axes.
+
+    Returns the changes of angular velocities and of the velocities of the centres of mass, (n_b, 3, n) each.
+    """
+    at = workspace_of(layout, None if holding is None else layout.closed(holding))
+    own, _ = settled(at, layout, t, law.state)
+    found = motions(at, layout, t, own)
+    place = places_of_rates(layout)
+    shown = displacements(layout, own, place[place >= 0])
+    spins, speeds = found.omega @ shown, found.v @ shown
+    for k, hang in enumerate(layout.spanning.hangs):
+        arm = law.attitudes[k] @ (layout.mechanism.bodies[hang.body].center - layout.reference[k])
+        turned = cross_rows((found.turn[k] @ shown).T, arm).T
+        speeds[k] += cross_rows(spins[k].T, arm).T + np.cross(law.omega[k][:, None], turned, axis=0)
+    return spins, speeds
+
+
 def displacements(layout: Layout, state: Array, rates: Array) -> Array:
     """What of a state small displacements of its own freedoms change, (n_state, n): q of a ball by (0, turn) q / 2."""
     order = {at: k for k, at in enumerate(rates.tolist())}

@@ -187,7 +187,8 @@ def left_alone(system: ReducedEquations, loose: Loose, scale: float) -> Array:
     A11, A22 = system.A11, system.A22
     X, Z = loose.right, -A11 @ loose.right
     found = [np.concatenate([X, Z / scale])]
-    small = tolerances.EIGENVALUE * system.count * (norm(A11) + norm(A22))
+    # where gyroscopic terms cancel, A11 and A22 are nothing but rounding of terms as fast as the spins
+    small = tolerances.EIGENVALUE * system.count * (norm(A11) + norm(A22) + float(np.sqrt(system.terms)))
     while X.shape[1]:
         asked = A22 @ X - Z
         on = null_space(loose.left.T @ asked, small)[0]

@@ -88,7 +88,8 @@ def sizes(layout: Layout, found: Linearised, at: Recovered, T: Array) -> tuple[f
     """Of what size the parts are whose sums are the loads along the motions, and their stiffness.
 
     What stands on a body and in its joint, F and M, acts along a motion x by F |shift| + M |turn|, and changes, as the
-    body turns with it, by F |turn| |shift| + M |turn|^2; spins W ask for W^2.
+    body turns with it, by F |turn| |shift| + M |turn|^2; spins W ask for W^2. Inertia loads of what goes on count as
+    loads: they cancel in a steady motion, of free bodies with nothing else.
     """
     twists = found.twists @ T
     turn, shift = (np.sqrt(np.sum(part**2, axis=1)) for part in (twists[:, :3], twists[:, 3:]))
@@ -97,9 +98,27 @@ def sizes(layout: Layout, found: Linearised, at: Recovered, T: Array) -> tuple[f
     force = force + layout.bodies["mass"] * float(np.sqrt(np.sum(layout.mechanism.gravity**2)))
     applied, turning = (np.sqrt(np.sum(at.loads[name][0] ** 2, axis=1)).sum() for name in ("force", "moment"))
     force, moment = force + applied, moment + turning
-    along = float(np.max(force @ shift + moment @ turn, initial=0.0))
+    inertia_force, inertia_moment = inertia_loads(layout, found)
+    along = float(np.max((force + inertia_force) @ shift + (moment + inertia_moment) @ turn, initial=0.0))
     spins = float(np.sum(found.omega**2, axis=1).max(initial=0.0))
     return along, float(np.max(force @ (turn * shift) + moment @ turn**2, initial=0.0)) + spins
+
+
+def inertia_loads(layout: Layout, found: Linearised) -> tuple[Array, Array]:
+    """Bounds of the inertia loads that the rates alone ask for, tree order: forces (n_b,) [N], moments (n_b,) [N m].
+
+    A centre is accelerated by at most W |v| + W^2 arm, W the fastest turn of what carries the body.
+    """
+    bodies = layout.mechanism.bodies
+    mass = np.array([bodies[hang.body].mass for hang in layout.spanning.hangs])
+    inertia = np.array([np.abs(bodies[hang.body].inertia).sum() for hang in layout.spanning.hangs])
+    spin = np.sqrt(np.sum(found.omega**2, axis=1))
+    speed = np.sqrt(np.sum(found.velocities**2, axis=1))
+    carrying = np.zeros(len(spin))
+    for k, parent in enumerate(layout.bodies["parent"].tolist()):  # a parent stands before what it carries
+        if parent >= 0:
+            carrying[k] = max(carrying[parent], spin[parent])
+    return mass * (carrying * speed + spin**2 * found.arms), inertia * spin**2
 
 
 def frames(layout: Layout, found: Linearised) -> tuple[Array, Array]:

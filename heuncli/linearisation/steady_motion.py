@@ -84,23 +84,33 @@ def off_balance(here: Looked) -> float:
 
     Infinite where what nothing holds is pushed.
     """
+    return rest_displacement(here, here.system.pushed) if here.system.count else 0.0
+
+
+def rest_displacement(here: Looked, push: Array) -> float:
+    """How far a push (f,) moves the pose that rests, by the linear equations: the largest turn, or shift by the size.
+
+    Infinite where it pushes what nothing holds.
+    """
     system = here.system
-    if not system.count:
-        return 0.0
     K = system.stiffness
     _, rest = completed(here.loose.right)
-    x = rest @ np.linalg.lstsq(K @ rest, system.pushed, rcond=None)[0]
-    if norm((system.pushed - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.loads:
+    x = rest @ np.linalg.lstsq(K @ rest, push, rcond=None)[0]
+    if norm((push - K @ x)[:, None]) > tolerances.FREELY_PUSHED * system.loads:
         return np.inf
     return float(np.abs(here.weights * (system.tangent @ x)).max(initial=0.0))
 
 
 def goes_on_as_it_is(here: Looked) -> bool:
-    """Whether a steady motion has the same linear equations later on, as seen by what moved along."""
+    """Whether a steady motion has the same linear equations later on, as seen by what moved along.
+
+    A push may change by a share of the loads, or by what moves the pose that rests by no more than a start may be off:
+    with no loads at all every rounding is more than a share of them.
+    """
     own = here.system
     size = max(norm(own.stiffness), own.terms)
     rate = size**0.5
-    parts = ((own.A11, rate), (own.A21, size), (own.A22, rate), (own.pushed, own.loads), (np.eye(own.count), 1.0))
+    parts = ((own.A11, rate), (own.A21, size), (own.A22, rate), (np.eye(own.count), 1.0))
     for phase in PHASES:
         dt = phase / fastest(here)
         y, turn = carried_on(here, dt)
@@ -109,7 +119,11 @@ def goes_on_as_it_is(here: Looked) -> bool:
             return False  # it did not close
         T = turn @ own.tangent
         later = on_basis(here.layout, found, at, T, turn @ own.drift)
-        again = (later.A11, later.A21, later.A22, later.pushed, T.T @ found.mass @ T)
+        push = later.pushed - own.pushed
+        is_same_push = np.abs(push).max(initial=0.0) <= tolerances.GOES_ON * own.loads
+        if not is_same_push and not rest_displacement(here, push) <= tolerances.OFF_BALANCE:
+            return False
+        again = (later.A11, later.A21, later.A22, T.T @ found.mass @ T)
         for (a, scale), b in zip(parts, again, strict=True):
             if np.abs(a - b).max(initial=0.0) > tolerances.GOES_ON * scale:
                 return False

@@ -98,6 +98,7 @@ def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechan
         conditions=conditions,
         points=points,
         couplings=couplings,
+        impacts=spec.analysis.impacts,
     )
 
 

@@ -175,6 +175,16 @@ class Coupling:
         return self.given.law if isinstance(self.given, spec.Rope) and not self.given.stretches else None
 
     @property
+    def pulls(self) -> bool:
+        """Whether it is a belt with a pretension, which is a load of its name."""
+        return isinstance(self.given, spec.Belt) and self.given.pretension > 0.0
+
+    @property
+    def has_load(self) -> bool:
+        """Whether there is a load of its name beside what it holds: a pretension, or what rubs in a thread."""
+        return self.pulls or (isinstance(self.given, spec.Screw) and self.given.friction is not None)
+
+    @property
     def joints(self) -> frozenset[int]:
         """The joints whose coordinates it counts by."""
         return frozenset(x.joint for row in self.rows for part in row.parts for x in part.coordinates)

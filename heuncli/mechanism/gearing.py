@@ -343,7 +343,8 @@ def away(mesh: GearMesh) -> Array:
     if not mesh.first.turns:
         return _unit(inward(mesh.second, mesh))
     one, other = inward(mesh.first, mesh), inward(mesh.second, mesh)
-    ring = one @ other > 0.0 and one @ one < other @ other  # the second one is: its teeth are inside
+    radii = [_length(wheel.arm(mesh.P)) for wheel in (mesh.first, mesh.second)]
+    ring = one @ other > 0.0 and radii[0] < radii[1]  # the second one is: its teeth are inside
     return -_unit(one) if ring else _unit(other)
 
 

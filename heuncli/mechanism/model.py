@@ -20,7 +20,7 @@ from heuncli.named_tuples import NamedTuple
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec import models
-from heuncli.spec.models import Condition
+from heuncli.spec.models import SIMULTANEOUS, Condition, ImpactModel
 
 GROUND = -1
 if TYPE_CHECKING:
@@ -309,7 +309,7 @@ class NamedPoint:
 class Mechanism:
     """A scene, ready to be assembled; gravity (3,): acceleration, world axes [m/s^2].
 
-    points: those that expressions name, by their names there.
+    points: those that expressions name, by their names there; impacts: how blows go through contacts that touch.
     """
 
     title: str
@@ -323,6 +323,7 @@ class Mechanism:
     conditions: tuple[Condition, ...] = ()
     points: Mapping[str, NamedPoint] = MappingProxyType({})
     couplings: tuple[Coupling, ...] = ()
+    impacts: ImpactModel = SIMULTANEOUS
 
     def owner(self, k: int) -> str:
         """What a closure row belongs to, as a path: the joint of a number, or after these the coupling."""
@@ -356,6 +357,12 @@ class Mechanism:
                 count = 2
             yield load, slice(at, at + count)
             at += count
+
+    def block_of(self, load: Load) -> str:
+        """The block of the spec that a load belongs to: belts pull their pulleys, threads rub, ropes stretch."""
+        if isinstance(load, PairLoad) and any(own.name == load.name and own.pulls for own in self.couplings):
+            return "couplings"
+        return path_of_load(load).partition(".")[0]
 
     def row_of_rope(self, name: str) -> int:
         """Which row of that table is a rope's that stretches; -1: none, for loads are left out of the scene."""
@@ -392,7 +399,8 @@ class Assembly:
 
     position (n, 3) and velocity (n, 3) of the bodies' origins, rotation (n, 3, 3), angular_velocity (n, 3);
     chosen: sentences on what was chosen for the user; gap: largest closure gap [m]; moved: the bodies that had to leave
-    the place in which they are drawn, each with its way.
+    the place in which they are drawn, each with its way; started: sentences on velocities that nothing in the spec
+    asks for, or that one may expect otherwise.
     """
 
     position: Array
@@ -402,3 +410,4 @@ class Assembly:
     chosen: tuple[str, ...]
     gap: float
     moved: tuple[str, ...] = ()
+    started: tuple[str, ...] = ()

@@ -69,6 +69,8 @@ def _block(
     if plan.of_foundation and len(named) == 2 and (only := [name for name in named if name.startswith("supports.")]):
         named = {"": named[""]}
         told = [f"all of it goes through {only[0].removeprefix('supports.')}, the only support"]
+    if plan is AXIS and named and all(np.isnan(item.values).all() for own in named.values() for item in own):
+        return {"heading": heading, "groups": [], "told": [plan.missing[1]], "missing": plan.missing[0]}
     groups, zero = [], []
     for name, own in named.items():
         label = name.replace("supports.", "support ", 1).replace("elements.", "element ", 1)

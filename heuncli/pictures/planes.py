@@ -33,6 +33,15 @@ class Plane(NamedTuple):
         """By which equal planes are known."""
         return tuple(np.round(np.concatenate([self.right, self.up]), 9).tolist())
 
+    def project(self, vectors: Array) -> tuple[Array, Array]:
+        """The parts of vectors (..., 3) to the right and up; what is open across the plane leaves them certain."""
+        return component(vectors, self.right), component(vectors, self.up)
+
+
+def component(vectors: Array, direction: Array) -> Array:
+    """The components of vectors (..., 3) along a direction (3,), which hang on no component that it does not have."""
+    return np.asarray(np.where(direction != 0.0, vectors * direction, 0.0).sum(axis=-1))
+
 
 def plane_seen_along(letter: str) -> Plane:
     """The plane across a world axis: of the two others the first to the right."""
@@ -118,4 +127,4 @@ def _in_axes(poses: Poses, of: str, seen_from: str, axis: Array) -> Array:
 def _is_flat(vectors: Array, axis: Array) -> bool:
     """Whether vectors (n, 3) have no component along an axis."""
     largest = float(np.nanmax(np.abs(vectors), initial=0.0))
-    return bool(np.nanmax(np.abs(vectors @ axis), initial=0.0) <= tolerances.IN_ONE_PLANE * largest)
+    return bool(np.nanmax(np.abs(component(vectors, axis)), initial=0.0) <= tolerances.IN_ONE_PLANE * largest)

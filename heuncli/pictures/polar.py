@@ -116,7 +116,7 @@ def _marked(
     for curve in group:
         found = _marks(curve.turning)
         vectors = size * vectors_at(curve.study, curve.path, np.array([at for at, _ in found]))
-        places = zip((vectors @ curve.plane.right).tolist(), (vectors @ curve.plane.up).tolist(), strict=True)
+        places = zip(*(own.tolist() for own in curve.plane.project(vectors)), strict=True)
         marks += [(curve.pen, place, text) for place, (_, text) in zip(places, found, strict=True)]
     known = [mark for mark in marks if all(map(math.isfinite, mark[1]))]
     for number, place, text in known:

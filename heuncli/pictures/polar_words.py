@@ -11,6 +11,7 @@ from heuncli import tolerances
 from heuncli.drawing.ticks import short
 from heuncli.pictures.certain import certain
 from heuncli.pictures.courses import Pictured
+from heuncli.pictures.planes import component
 from heuncli.pictures.tips import Largest, TipCurve
 from heuncli.report.table_units import Units
 
@@ -49,11 +50,14 @@ def notes_of(curve: TipCurve, largest: Largest | None, units: Units) -> Iterator
         return
     told = f"{certain(size * largest.size, size * largest.error)} {unit}"
     yield f"{curve.name}: {f'{told} all along' if largest.steady else f'largest {told} {_where(curve, largest)}'}"
-    along = float(np.nanmax(np.abs(curve.vectors @ curve.plane.across), initial=0.0))
+    across = component(curve.vectors, curve.plane.across)
+    along = float(np.nanmax(np.abs(across), initial=0.0))
     if along > tolerances.TOLD_ACROSS * largest.size:
         yield f"{curve.name}: across the plane up to {size * along:.4g} {unit}, not drawn"
-    if np.isnan(curve.vectors).any():
+    if np.isnan(curve.x + curve.y).any():
         yield f"{curve.name}: open or not known in parts, and not drawn there"
+    elif np.isnan(across).any():
+        yield f"{curve.name}: open or not known across the plane, which is not drawn"
     if "1" in curve.plane.names:
         words = (f"({', '.join(f'{x:.4g}' for x in e + 0.0)})" for e in (curve.plane.right, curve.plane.up))
         yield f"{curve.name}: directions 1 and 2 are {' and '.join(words)}"

@@ -38,12 +38,12 @@ class TipCurve(NamedTuple):
     @property
     def x(self) -> Array:
         """To the right."""
-        return np.asarray(self.vectors @ self.plane.right)
+        return self.plane.project(self.vectors)[0]
 
     @property
     def y(self) -> Array:
         """Up."""
-        return np.asarray(self.vectors @ self.plane.up)
+        return self.plane.project(self.vectors)[1]
 
 
 class Largest(NamedTuple):
@@ -106,8 +106,8 @@ def largest_of(curve: TipCurve) -> Largest | None:
     study, plane = curve.study, curve.plane
 
     def sample(times: Array) -> Array:
-        own = vectors_at(study, curve.path, times)
-        return np.asarray(((own @ plane.right) ** 2 + (own @ plane.up) ** 2)[:, None])
+        x, y = plane.project(vectors_at(study, curve.path, times))
+        return np.asarray((x * x + y * y)[:, None])
 
     looked_at = study.search_times
     times = curve.turning.times
@@ -117,8 +117,7 @@ def largest_of(curve: TipCurve) -> Largest | None:
     at = float(found.high_at[0])
     if not np.isfinite(found.high[0]):
         return None
-    vector = vectors_at(study, curve.path, np.array([at]))[0]
-    x, y = float(vector @ plane.right), float(vector @ plane.up)
+    x, y = map(float, plane.project(vectors_at(study, curve.path, np.array([at]))[0]))
     size, error = math.sqrt(float(found.high[0])), 0.0 if math.isnan(error) else error
     least = float(np.nanmin(np.hypot(curve.x, curve.y)))
     return Largest(x, y, size, error, at, not varies(least, size, error))

@@ -75,7 +75,7 @@ def open_joint(
             parts["drive"] = open_along(load.joint.drive.quantity, free, stress)
     if load.tension is not None:
         parts["drive"] = parts["tension"] = np.asarray(force.any(axis=1))
-    parts["pressure"] = np.asarray(force.any(axis=1))
+    parts["pressure"] = parts.get("radial", np.asarray(force.any(axis=1)))
     for own in (block, *block.get("shares", {}).values()):
         for name in parts.keys() & own.keys():
             own[name] = opened(own[name], parts[name])

@@ -12,6 +12,7 @@ from heuncli.integration.run.runner import Runner
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.kinetostatics.coupling_numbers import components_of
 from heuncli.kinetostatics.couplings import CouplingLoads
+from heuncli.kinetostatics.foundation import ElementKeys
 from heuncli.kinetostatics.joint_axes import axes_at, components_of_shares
 from heuncli.kinetostatics.reactions import JointLoads
 from heuncli.mechanism.model import GROUND
@@ -64,16 +65,16 @@ class Resolution:
         return self.left is not None or bool(self.words)
 
     def show(
-        self, states: BodyStates, shown: Block, couplings: Sequence[CouplingLoads] = (), axes: str = "world"
+        self, states: BodyStates, shown: Block, couplings: Sequence[CouplingLoads], axes: str, keys: ElementKeys
     ) -> None:
         """Mark what is open, or was until a split was chosen, in the blocks of all that stands or carries, in place.
 
-        axes: in which the joints' loads are told.
+        axes: in which the joints' loads are told; keys: of what stands on the ground (kinetostatics/foundation.py).
         """
         reactions = shown.get("joints")
         if self.left is not None:
-            put_verdicts(self.left, self.joints, states, shown, axes)
-            put_verdicts_on_couplings(self.left, couplings, shown)
+            put_verdicts(self.left, self.joints, states, shown, axes, keys)
+            put_verdicts_on_couplings(self.left, couplings, shown, keys)
         if self.words and self.stress is not None and reactions is not None:
             mark_chosen(self.stress, self.joints, states, reactions, axes)
 
@@ -122,7 +123,9 @@ def singular_poses(stress: SelfStress, times: Array, redundant: Array) -> list[s
     return sentences
 
 
-def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block, axes: str) -> None:
+def put_verdicts(
+    stress: SelfStress, joints: Sequence[JointLoads], states: BodyStates, shown: Block, axes: str, keys: ElementKeys
+) -> None:
     """Make the open components of joints, stops and what stands on the ground visible, in place."""
     base = shown.get("foundation", {})
     supports, elements = base.get("supports", {}), base.get("elements", {})
@@ -137,29 +140,30 @@ def put_verdicts(stress: SelfStress, joints: Sequence[JointLoads], states: BodyS
         for own in load.stops:
             touched = np.any(own.unit != 0.0, axis=1)  # or others of the joint are
             stop, beside = own.stop, np.where(touched[:, None, None], free, 0.0)
-            if stop.name in elements:
-                open_support(elements[stop.name], of_quantity(beside, stop.quantity), stress)
+            if (element := elements.get(keys.get(("stops", stop.name), ""))) is not None:
+                open_support(element, of_quantity(beside, stop.quantity), stress)
             if stop.name in shown.get("stops", {}):
                 block = shown["stops"][stop.name]
                 is_open = open_along(stop.quantity, beside, stress)
                 block |= {name: opened(value, is_open) for name, value in block.items()}
         if drive is not None and load.drive is not None and load.axis is not None:
-            key = f"drives.{drive.name}" if f"drives.{drive.name}" in elements else drive.name
-            if key in elements:
-                open_support(elements[key], of_quantity(free, drive.quantity), stress)
+            if (element := elements.get(keys.get(("drives", drive.name), ""))) is not None:
+                open_support(element, of_quantity(free, drive.quantity), stress)
 
 
-def put_verdicts_on_couplings(stress: SelfStress, couplings: Sequence[CouplingLoads], shown: Block) -> None:
+def put_verdicts_on_couplings(
+    stress: SelfStress, couplings: Sequence[CouplingLoads], shown: Block, keys: ElementKeys
+) -> None:
     """The same of couplings, and of their loads on the ground, in place."""
     elements = shown.get("foundation", {}).get("elements", {})
     for loads in couplings:
         name = loads.coupling.name
         if name in shown.get("couplings", {}):
             open_coupling(shown["couplings"][name], loads, stress)
-        if name in elements:
+        if (element := elements.get(keys.get(("couplings", name), ""))) is not None:
             on = [loads.of_multipliers(stress.multipliers[:, :, k]) for k in range(stress.largest.shape[1])]
             shares = [np.concatenate(own.on_bodies()[GROUND][1:], axis=1) for own in on]
-            open_support(elements[name], np.stack(shares, axis=-1), stress)
+            open_support(element, np.stack(shares, axis=-1), stress)
 
 
 def mark_chosen(

@@ -23,6 +23,7 @@ from heuncli.report.digits import (
     write,
     write_times,
 )
+from heuncli.report.labels import distinguish
 from heuncli.report.series import Series
 from heuncli.report.table_blocks import NumberRow, RowGroup, TableBlock, rows_of
 from heuncli.report.table_plans import MASS_EFFECT
@@ -30,6 +31,7 @@ from heuncli.report.text_table import INDENT, TextColumn, TextTable
 from heuncli.results import Array, Extremes, Place, Results
 from heuncli.results_schema import BY_CAUSE, SECTION_FORCES, SECTION_MOMENTS, SHARES
 
+OWN_COLUMNS = ("sum", "total")  # behind those of the causes
 MOST_CAUSES = 9  # that have a column; the smallest of more are told together
 ALONG_NOTE = "of |F| and |M| the share along the whole vector"
 CAUSES_NOTE = "motion: the part quadratic in the velocities; drives: that of prescribed accelerations"
@@ -192,7 +194,7 @@ def table_of(heading: str, groups: LineGroups, certain: Certainty) -> TextTable:
     everything = [line for _, lines in groups for line in lines]
     known = dict.fromkeys(cause for line in everything for cause in line.shares)
     few, rest = chosen_causes(list(known), everything)
-    heads = [*few, *[f"{len(rest)} others"] * bool(rest), "sum", "total"]
+    heads = [*few, *[f"{len(rest)} others"] * bool(rest), *OWN_COLUMNS]
     rows: list[tuple[str, ...] | str] = []
     kept_lines: list[ShareLine] = []
     words, left_out = set[str](), False
@@ -215,7 +217,8 @@ def table_of(heading: str, groups: LineGroups, certain: Certainty) -> TextTable:
     shown = [i for i in range(len(heads)) if i not in empty]
     lead = 3 if any(line.at for line in everything) else 2
     cells = [row if isinstance(row, str) else (*row[:lead], *(row[3 + i] for i in shown)) for row in rows]
-    columns = [*(TextColumn(head, "left") for head in ("", "", "at")[:lead]), *(TextColumn(heads[i]) for i in shown)]
+    spoken = [distinguish(cause, OWN_COLUMNS) for cause in few] + heads[len(few) :]
+    columns = [*(TextColumn(head, "left") for head in ("", "", "at")[:lead]), *(TextColumn(spoken[i]) for i in shown)]
     where = "in all that is not open" if words else "throughout"
     notes = [f"0 {where}: {', '.join(heads[i] for i in empty)}"] if empty else []
     notes += notes_of(kept_lines, {heads[i] for i in shown}, words.union(*numbers))

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.foreign_text import shown
 from heuncli.report.digits import LOADS, rough
+from heuncli.report.markdown_text import escape_line
 from heuncli.report.plurals import count
 from heuncli.report.text_table import labelled
 from heuncli.results import Estimate, Results
@@ -28,6 +28,7 @@ def heading(results: Results, every: bool = False) -> list[tuple[str, str]]:
         *(_labelled("reduced", results.model.get("reduced", ())) if every else ()),
         *(("unseen", sentence) for sentence in results.model.get("cannot_tell", ())),
         *_moved(results.model.get("moved", ())),
+        *_started(results.model.get("started", ())),
         ("run", _run(results)),
         *_anew(results.model.get("reasons", ())),
         *_labelled("rest", results.model.get("rest", ())),
@@ -58,8 +59,8 @@ def write_heading(results: Results, every: bool = False) -> str:
 def write_heading_markdown(results: Results, every: bool = False) -> str:
     """The heading as markdown."""
     lines = heading(results, every)
-    body = "".join(f"- {label + ': ' if label else ''}{shown(text)}\n" for label, text in lines[1:])
-    return f"## {shown(results.title)}\n\n- heun: {results.version}\n{body}\n"
+    body = "".join(f"- {escape_line(label + ': ' * bool(label) + text)}\n" for label, text in lines[1:])
+    return f"## {escape_line(results.title)}\n\n- heun: {results.version}\n{body}\n"
 
 
 def _labelled(label: str, sentences: Sequence[str]) -> list[tuple[str, str]]:
@@ -72,6 +73,14 @@ def _moved(ways: Sequence[str]) -> list[tuple[str, str]]:
     named = ", ".join(ways[:MOST_MOVED])
     more = f" and {len(ways) - MOST_MOVED} more" if len(ways) > MOST_MOVED else ""
     return [("moved", f"to close the joints: {named}{more}; heun model lists it")] if ways else []
+
+
+def _started(sentences: Sequence[str]) -> list[tuple[str, str]]:
+    """What starts to move, or rests, otherwise than one may expect."""
+    told = list(sentences[:MOST_TOLD])
+    if len(sentences) > MOST_TOLD:
+        told.append(f"{len(sentences) - MOST_TOLD} more: heun model lists them")
+    return _labelled("start", told)
 
 
 def _contacts(sentences: Sequence[str]) -> list[tuple[str, str]]:

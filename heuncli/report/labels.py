@@ -5,7 +5,7 @@ From the kinds follow the units that the results alone do not determine: a pin's
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -98,6 +98,11 @@ class Labels:
         if force.turning is not None:
             return force.turning
         return force.type == "couple" or self._kind(force.joint).motions[:1] == ("turning",)
+
+
+def distinguish(name: str, words: Collection[str], kind: str = "force") -> str:
+    """The name, with its kind behind it where it is one of the words that the table has for its own numbers."""
+    return f"{name} ({kind})" if name in words else name
 
 
 def labels_for_units(spec: Spec) -> Labels:

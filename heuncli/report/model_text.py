@@ -20,6 +20,7 @@ LISTS = (
     ("integrates", "What is integrated"),
     ("chosen", "Start values chosen for you"),
     ("moved", "Moved from the drawing"),
+    ("started", "How it starts to move"),
     ("notes", "Worth knowing"),
 )
 

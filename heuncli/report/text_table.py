@@ -7,6 +7,7 @@ from typing import Literal
 
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
+from heuncli.report.markdown_text import escape_line, escape_markdown
 from heuncli.wrapping import wrapped
 
 GAP = "  "
@@ -37,6 +38,11 @@ class TextTable(NamedTuple):
     rows: tuple[tuple[str, ...] | str, ...] = ()
     notes: tuple[str, ...] = ()
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether nothing stands below the heading."""
+        return not self.rows and not self.notes
+
 
 def head(label: str, unit: str) -> str:
     """What stands above a column of numbers."""
@@ -45,6 +51,8 @@ def head(label: str, unit: str) -> str:
 
 def plain(table: TextTable, width: int | None = None) -> str:
     """The table as aligned text; ends with a newline. Headings, titles and notes go on in more lines, if of a width."""
+    if table.is_empty:
+        return ""
     indent = INDENT if any(isinstance(row, str) for row in table.rows) else ""
     lines = wrapped(shown(table.heading), width) if table.heading else []
     if table.columns:
@@ -70,16 +78,18 @@ def labelled(lines: Sequence[tuple[str, str]], width: int = WIDTH) -> str:
 
 def markdown(table: TextTable) -> str:
     """The table as markdown; the lines across become rows with a bold first cell."""
-    lines = [f"### {_escape(table.heading)}", ""] if table.heading else []
+    if table.is_empty:
+        return ""
+    lines = [f"### {escape_line(table.heading)}", ""] if table.heading else []
     if table.columns:
         lines.append(_markdown_row(column.head for column in table.columns))
         lines.append(_markdown_row("---" if column.align == "left" else "---:" for column in table.columns))
         blank = [""] * (len(table.columns) - 1)
         for row in table.rows:
-            lines.append(_markdown_row([f"**{row}**", *blank] if isinstance(row, str) else row))
+            lines.append(_markdown_row([row, *blank], bold=True) if isinstance(row, str) else _markdown_row(row))
         lines.append("")
     for note in table.notes:
-        lines += [_escape(note), ""]
+        lines += [escape_line(note), ""]
     return "\n".join(lines)
 
 
@@ -119,9 +129,6 @@ def _line(cells: Sequence[str], widths: Sequence[int], columns: Sequence[TextCol
     return (indent + GAP.join(padded)).rstrip()
 
 
-def _markdown_row(cells: Iterable[str]) -> str:
-    return "| " + " | ".join(_escape(cell) for cell in cells) + " |"
-
-
-def _escape(text: str) -> str:
-    return shown(text).replace("|", "\\|")
+def _markdown_row(cells: Iterable[str], *, bold: bool = False) -> str:
+    texts = map(escape_markdown, cells)
+    return "| " + " | ".join(f"**{text}**" if bold and text else text for text in texts) + " |"

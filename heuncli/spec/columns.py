@@ -1,8 +1,9 @@
 """Columns of numbers out of a CSV text, as programs write it.
 
 Commas, semicolons (then with decimal commas, too), tabs or spaces separate; empty lines and lines that begin with #
-do not count. The text is taken in pieces of some lines: NumPy reads those that hold nothing but plain numbers, all
-others are read cell by cell, by the same rules, and so are those in which something is wrong, to say what and where.
+do not count. A file has one decimal mark: where commas are, a point may as well mark thousands. The text is taken in
+pieces of some lines: NumPy reads those that hold nothing but plain numbers, all others are read cell by cell, by the
+same rules, and so are those in which something is wrong, to say what and where.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from heuncli.errors import Finding
 from heuncli.named_tuples import NamedTuple
 from heuncli.nearest import LONGEST, listed, nearest
 from heuncli.results_schema import counted
+from heuncli.spec.headings import name_in_heading
 
 MOST_ROWS = 2_000_000
 PIECE = 1 << 20  # characters: NumPy's start is nothing beside reading them, and what they take in between is little
@@ -34,6 +36,7 @@ ROWS = "each row has its numbers between commas, as 0.5, 12"
 FEWER = "keep the points that matter: between them the table interpolates"
 NUMBERS = "one number a cell, with a point; lines of words begin with #"
 QUOTES = "quotes come in pairs; plain numbers need none"
+ONE_MARK = "write all numbers of the file with one decimal mark, and thousands without any"
 
 Columns = list["array[float]"]
 
@@ -54,6 +57,14 @@ class CsvError(Exception):
         self.line, self.column, self.finding = line, column, finding
 
 
+class Heading(NamedTuple):
+    """What stands above a column, and on which line; the column's number counts from 1."""
+
+    text: str
+    line: int
+    number: int
+
+
 class ColumnLayout(NamedTuple):
     """How a file is written: what separates cells, the names in its first row, how many cells that has, and how many
     lines stand before the numbers."""
@@ -66,6 +77,14 @@ class ColumnLayout(NamedTuple):
 
 def columns_of(text: str, *wanted: object) -> Columns:
     """Columns of a text, by their names in the first row or their numbers from 1. Raises CsvError, NoColumn."""
+    return read_columns(text, *wanted)[0]
+
+
+def read_columns(text: str, *wanted: object) -> tuple[Columns, list[Heading | None]]:
+    """Columns of a text, and what stands above each of them (None where the first row is a point).
+
+    wanted: names in the first row, with their unit or without, or numbers from 1. Raises CsvError, NoColumn.
+    """
     layout = layout_of(text)
     indices = [column(number, key, layout, text) for number, key in enumerate(wanted)]
     if all(counted(str(key)) is not None for key in wanted) and begins_at_once(layout, indices, text):
@@ -76,7 +95,31 @@ def columns_of(text: str, *wanted: object) -> Columns:
             read_rows(lines, line, layout.mark, indices, columns)
         if len(columns[0]) > MOST_ROWS:
             raise CsvError(1, 1, Finding("too-large", f"more than {MOST_ROWS} rows; at most so many are read", FEWER))
-    return columns
+    if layout.mark == ";" and "," in text and "." in text:
+        require_one_decimal_mark(text, layout, indices)
+    headings = [Heading(layout.names[i], layout.before, i + 1) if layout.names else None for i in indices]
+    return columns, headings
+
+
+def require_one_decimal_mark(text: str, layout: ColumnLayout, indices: Sequence[int]) -> None:
+    """Refuse columns with decimal commas in some cells and points in others. Raises CsvError."""
+    first: tuple[str, str, int] | None = None  # a mark, the first cell with it, its line
+    for begin, lines in numbered(text, layout.before):
+        for n, line in enumerate(lines, begin):
+            if not is_row(line):
+                continue
+            row = cells(n, line, layout.mark)
+            for index in indices:
+                cell = row[index].strip()
+                mark = next((one for one in ",." if one in cell), None)
+                if mark is None:
+                    continue
+                first = first or (mark, cell, n)
+                if mark != first[0]:
+                    message = (
+                        f"'{cell}' in column {index + 1} beside '{first[1]}' on line {first[2]}: two decimal marks"
+                    )
+                    raise CsvError(n, 1, Finding("table-file", message, ONE_MARK))
 
 
 def numbered(text: str, before: int = 0) -> Iterator[tuple[int, list[str]]]:
@@ -224,7 +267,8 @@ def column(number: int, key: object, layout: ColumnLayout, text: str) -> int:
     """Index of a column, from 0; number: which of those wanted. Raises NoColumn."""
     place = counted(str(key)) if isinstance(key, int | str) else None
     if isinstance(key, str) and place is None:
-        found = [i for i, name in enumerate(layout.names) if name == key]
+        found = [i for i, name in enumerate(layout.names) if name == key.strip()]
+        found = found or [i for i, name in enumerate(layout.names) if name_in_heading(name) == key.strip()]
         if len(found) == 1:
             return found[0]
         if found:

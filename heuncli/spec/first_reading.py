@@ -45,11 +45,12 @@ class KeptEntry(NamedTuple):
 
 
 class KeptTable(NamedTuple):
-    """A table, the entry it was built of, and what was looked up for it."""
+    """A table, the entry it was built of, what was looked up for it, and the findings that were made with it."""
 
     table: TableFunction | None
     entry: f.TableEntry
     lookups: frozenset[Lookup]
+    findings: list[Wrong]
 
 
 class KeptVerdict(NamedTuple):
@@ -148,7 +149,7 @@ class FirstReading(Loading):
         """The table of an entry, or what is wrong with it."""
         self.log.taken()
         table, wrong = super().table(name, entry, self._watched(scope))
-        self.built[name] = KeptTable(table, entry, self.log.taken())
+        self.built[name] = KeptTable(table, entry, self.log.taken(), wrong)
         return table, wrong
 
     def violations(self, draft: DraftDocument) -> Iterator[tuple[Rule, Violation]]:

@@ -511,6 +511,7 @@ class AnalysisEntry(Entry):
     tolerance: Number | None = None
     method: str = "auto"
     step: Time | None = None
+    impacts: Literal["simultaneous", "sequential"] = "simultaneous"
     until: ConditionEntry | None = None
     events: dict[str, ConditionEntry] = key(default_factory=dict)
 

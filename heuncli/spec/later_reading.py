@@ -96,7 +96,7 @@ class LaterReading(Loading):
         if kept is not None and kept.entry is entry:
             differing = frozenset(self._changed(Context(scope, scope)))
             if kept.lookups.isdisjoint(differing):
-                return kept.table, []
+                return kept.table, kept.findings
         return super().table(name, entry, scope)
 
     def surface(self, file: str) -> tuple[TriangleMesh | None, list[Wrong]]:

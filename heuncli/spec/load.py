@@ -235,16 +235,24 @@ class Loading:
         asked = {i: item for i, item in draft.document.expect.items() if item.curve is not None}
         if not asked:
             return {}
+        from heuncli.expressions.units import TIME
         from heuncli.spec.measured import build_curve  # as for tables
         from heuncli.spec.rules.curves import abscissa
+        from heuncli.spec.rules.expect import outcomes
 
         instants = instants_of(draft.document) if self.checking else ()
         run = (min(instants), max(instants)) if len(instants) > 1 else None
         curves: dict[int, Curve] = {}
+        kinds = {path[1]: quantity for path, _, quantity in outcomes(draft)}
         for i, item in asked.items():
             path = ("expect", i)
-            across = abscissa(item, draft)
-            curve, wrong = build_curve(item, None if across is None else str(item.x), run, self.named_files())
+            across, quantity = abscissa(item, draft), kinds.get(i)
+            known = (
+                (TIME,) if across is None else across.dimensions,
+                () if quantity is None else quantity.dimensions,
+            )
+            x_of = None if across is None else str(item.x)
+            curve, wrong = build_curve(item, x_of, run, known, self.named_files())
             if curve is not None:
                 curves[i] = curve
             if told := self.named_files().outside(str(item.curve)):
@@ -291,7 +299,8 @@ class Loading:
         for item in wrong:
             finding = item.finding
             if item.location is not None:
-                self.problems.append(Problem(finding.code, finding.message, item.location, finding.hint))
+                problem = Problem(finding.code, finding.message, item.location, finding.hint)
+                (self.warnings if item.is_warning else self.problems).append(problem)
             else:
                 self.report(finding.code, Violation((*path, *item.keys), finding.message, finding.hint))
 

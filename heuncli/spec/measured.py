@@ -9,56 +9,68 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import Finding, SourceLocation
+from heuncli.expressions.units import Dimension, describe
 from heuncli.number_range import are_in_range, out_of_range
+from heuncli.records import replace
 from heuncli.spec.columns import Columns, rows_of
 from heuncli.spec.format import ExpectEntry
 from heuncli.spec.models import Curve
 from heuncli.spec.named_files import NamedFiles
-from heuncli.spec.tables import Wrong, from_file, unit_size
+from heuncli.spec.tables import ColumnUnit, Wrong, from_file, is_faulty
 
 ONE_POINT = "a curve has two points at least; one number is expected by at: and is:"
 ASCENDING = "sort the rows by x, and keep one of each"
 
 
 def build_curve(
-    item: ExpectEntry, x_of: str | None, run: tuple[float, float] | None, files: NamedFiles
+    item: ExpectEntry,
+    x_of: str | None,
+    run: tuple[float, float] | None,
+    known: tuple[tuple[Dimension, ...], tuple[Dimension, ...]],
+    files: NamedFiles,
 ) -> tuple[Curve | None, list[Wrong]]:
-    """The curve of an expectation, or what is wrong with it.
+    """The curve of an expectation, None where it cannot be used, and what is wrong with it.
 
-    x_of: the path whose number x is, None for time; run: its first and last instant, where they matter.
+    x_of: the path whose number x is, None for time; run: its first and last instant, where they matter; known: the
+    dimensions that the numbers of each column may have, none where that is not known.
     """
     assert item.curve is not None
     wrong: list[Wrong] = []
-    sizes = [unit_size(key, getattr(item, key), wrong) for key in ("x_unit", "y_unit")]
-    columns = columns_in(item, x_of, files, wrong)
-    if columns is None or wrong:
-        return None, wrong
-    for column, size in zip(columns, sizes, strict=True):
-        values = np.frombuffer(column)  # the same memory
-        with np.errstate(over="ignore"):  # judged below, with its line
-            values *= size
+    columns, units = columns_in(item, x_of, files, wrong)
     file = str(files.path(item.curve))
+    for unit, dimensions in zip(units, known, strict=False):
+        if unit.heading is not None and unit.dimension is not None and dimensions and unit.dimension not in dimensions:
+            expected = " or ".join(describe(one) for one in dimensions)
+            message = f"column {unit.heading.number} is {describe(unit.dimension)} by its heading, expected {expected}"
+            finding = Finding("wrong-dimension", message, "name another column, or say its unit: x_unit, y_unit")
+            wrong.append(Wrong((), finding, SourceLocation(file, unit.heading.line, 1)))
+    if columns is None or is_faulty(wrong):
+        return None, wrong
+    sizes = [unit.size for unit in units]
     lines = lines_of(files.text(item.curve), len(columns[0]))
     found = next(faults(columns, sizes, None if x_of is not None else run), None)
     if found is not None:
         i, finding = found
-        return None, [Wrong((), finding, SourceLocation(file, lines[i] if len(lines) else 1, 1))]
+        return None, [*wrong, Wrong((), finding, SourceLocation(file, lines[i] if len(lines) else 1, 1))]
     within = item.within if item.within is not None else 1.0
-    return Curve(file, columns[0], columns[1], lines, x_of, within), []
+    return Curve(file, columns[0], columns[1], lines, x_of, within), wrong
 
 
-def columns_in(item: ExpectEntry, x_of: str | None, files: NamedFiles, wrong: list[Wrong]) -> Columns | None:
-    """The columns as they stand in the file; what x is a path of stands in the column of its name, or in the first."""
+def columns_in(
+    item: ExpectEntry, x_of: str | None, files: NamedFiles, wrong: list[Wrong]
+) -> tuple[Columns | None, list[ColumnUnit]]:
+    """The columns in SI and their units; what x is a path of stands in the column of its name, or in the first."""
     assert item.curve is not None
     given = item.x if item.x is not None else 1
     y = item.y if item.y is not None else 2
     found: list[Wrong] = []
-    columns = from_file((given, y), item.curve, files, found)
+    units = (item.x_unit, item.y_unit)
+    columns, read_units = from_file((given, y), units, item.curve, files, found)
     if x_of is not None and any(one.keys == ("x",) for one in found):
         found = []
-        columns = from_file((1, y), item.curve, files, found)
-    wrong += [Wrong(("curve",) if one.keys == ("file",) else one.keys, one.finding, one.location) for one in found]
-    return columns
+        columns, read_units = from_file((1, y), units, item.curve, files, found)
+    wrong += [replace(one, keys=("curve",)) if one.keys == ("file",) else one for one in found]
+    return columns, read_units
 
 
 def lines_of(text: str, points: int) -> array[int]:

@@ -450,10 +450,15 @@ class ResultCondition(NamedTuple):
 WatchedCondition = Condition | ResultCondition
 
 
+ImpactModel = Literal["simultaneous", "sequential"]
+SIMULTANEOUS: ImpactModel = "simultaneous"
+
+
 class Analysis(NamedTuple):
     """What is solved: times are the instants asked for [s]; duration is the last of them in a motion.
 
-    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default.
+    step is for methods of fixed step. tolerance_given: whether somebody asked for it, or it is the default. impacts: how
+    a blow goes through several contacts that touch.
     """
 
     type: Literal["motion", "impulse", "state", "rest"]
@@ -464,6 +469,7 @@ class Analysis(NamedTuple):
     step: float | None
     conditions: tuple[WatchedCondition, ...] = ()
     tolerance_given: bool = False
+    impacts: ImpactModel = SIMULTANEOUS
 
 
 class Foundation(NamedTuple):

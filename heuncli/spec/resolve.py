@@ -132,6 +132,7 @@ class Resolver:
             analysis.step,
             (*self.conditions(analysis), *(self.brought() if kind == "motion" else ())),
             analysis.tolerance is not None,
+            analysis.impacts,
         )  # fmt: skip
 
     def point(self, body: str, name: str) -> m.Vec:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from heuncli.telling.changes import Change
+from heuncli.telling.change import Change
 from heuncli.telling.kept import Value
 
 

@@ -6,52 +6,16 @@ beyond the horizon, beside a singular pose), and the other tells is a change wha
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from itertools import chain
 
 from heuncli.named_tuples import NamedTuple
-from heuncli.telling.kept import EVEN, KeptBlow, KeptEvent, KeptNumber, KeptRun, KeptSum, Value
+from heuncli.telling.change import Change
+from heuncli.telling.course_changes import at_other_instants, course_changes
+from heuncli.telling.kept import BOUNDS, EVEN, KeptBlow, KeptEvent, KeptNumber, KeptRun, KeptSum, Value
 
 MISSING, EXTRA = "missing", "extra"
 THROUGHOUT = "throughout"  # the word for a number that is the same at all instants
-
-
-class Change(NamedTuple):
-    """One difference: of what, where in its course, before and after; allowed: by how much they may differ.
-
-    why: in words, where the two are not numbers that differ; alike: how many more values of the same quantity changed.
-    """
-
-    path: str
-    what: str
-    unit: str
-    old: Value | str | None
-    new: Value | str | None
-    allowed: float | None = None
-    why: str = ""
-    alike: int = 0
-    at: float | None = None
-
-    @property
-    def difference(self) -> float | None:
-        """New less old; None where the two are not numbers."""
-        if isinstance(self.old, str) or isinstance(self.new, str) or self.old is None or self.new is None:
-            return None
-        return self.new - self.old
-
-    @property
-    def relative(self) -> float:
-        """The difference over the larger of the two; without numbers infinite: such changes come first."""
-        if self.difference is None or isinstance(self.old, str) or isinstance(self.new, str):
-            return float("inf")
-        return abs(self.difference) / max(abs(self.old or 0.0), abs(self.new or 0.0))
-
-    @property
-    def excess(self) -> float:
-        """The difference over what is allowed."""
-        if self.difference is None or not self.allowed:
-            return float("inf")
-        return abs(self.difference) / self.allowed
 
 
 class Allowance(NamedTuple):
@@ -157,10 +121,11 @@ def _numbers(
         yield from (change,) if change is not None else ()
         return
     found = [
-        change for word in (*old.values.keys(), *(new.values.keys() - old.values.keys()))
+        change for word in _words_of_both(old, new)
         if (change := _value(path, word, (old, new), allowance, runs)) is not None
     ]  # fmt: skip
-    extremes = [change for change in found if change.what in ("least", "greatest")]
+    found += course_changes(path, (old, new), runs, allowance.of(path, old, new), by_error=allowance.share is None)
+    extremes = [change for change in found if change.what in BOUNDS]
     if extremes:
         yield from (change._replace(alike=(len(found) - len(extremes)) * (not i)) for i, change in enumerate(extremes))
     elif found:
@@ -168,14 +133,21 @@ def _numbers(
         yield worst._replace(alike=len(found) - 1)
 
 
+def _words_of_both(old: KeptNumber, new: KeptNumber) -> list[str | int]:
+    """The values of two numbers that are compared; of one that is constant, those that the other has."""
+    if old.constant is not None:
+        return list(new.values)
+    return [*old.values, *(() if new.constant is not None else sorted(new.values.keys() - old.values.keys(), key=str))]
+
+
 def _value(
-    path: str, word: str, pair: tuple[KeptNumber, KeptNumber], allowance: Allowance, runs: tuple[KeptRun, KeptRun]
+    path: str, word: str | int, pair: tuple[KeptNumber, KeptNumber], allowance: Allowance, runs: tuple[KeptRun, KeptRun]
 ) -> Change | None:
     """One value of a quantity, where it differs."""
     old, new = pair
     before, after = (old.constant, new.constant) if word == THROUGHOUT else (old.values.get(word), new.values.get(word))
     instants = [run.even_at for run in runs]
-    if isinstance(word, int) and _elsewhere(instants):
+    if isinstance(word, int) and at_other_instants(runs):
         return None  # of runs of other lengths: their ends are told
     at = instants[0][word] if isinstance(word, int) and word < len(instants[0]) else None
     what = f"t = {at:.6g} s" if at is not None else str(word)
@@ -188,14 +160,6 @@ def _value(
         return change if before != after else None
     differs = not abs(after - before) <= allowed
     return Change(path, what, old.unit, before, after, allowed, at=at) if differs else None
-
-
-def _elsewhere(instants: Sequence[Sequence[float]]) -> bool:
-    """Whether two runs are kept at other even instants."""
-    old, new = instants
-    if len(old) != len(new):
-        return True
-    return bool(old) and any(abs(a - b) > 1e-6 * (old[-1] - old[0]) for a, b in zip(old, new, strict=True))
 
 
 def _became(old: Value | str | None, new: Value | str | None) -> str:

@@ -100,7 +100,7 @@ def columns_of(results: Results, scope: KeptScope) -> list[KeptColumn]:
 def is_shown(series: Series, shown: frozenset[Shown]) -> bool:
     if series.cause or series.static:
         return False
-    only = series.name if series.name in PARTS else None
+    only = series.name if series.kind == "foundation" and series.name in PARTS else None
     return Shown(series.kind, only, series.quantity) in shown
 
 

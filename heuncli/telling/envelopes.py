@@ -1,4 +1,8 @@
-"""The envelope of load cases: the lowest and the highest of each number, with the instant and the case that governs."""
+"""The envelope of load cases: the lowest and the highest of each number, with the instant and the case that governs.
+
+No case governs where all are as high but for their errors, as all are that are nothing but rounding; where some are,
+the others stand beside the highest.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +13,22 @@ from heuncli.telling.kept import BEYOND, KeptNumber, KeptRun
 
 
 class Bound(NamedTuple):
-    """The lowest or highest of all cases: its value, its instant where it is not throughout, and the case."""
+    """The lowest or highest of all cases: its value, its instant where it is not throughout, and the case.
+
+    case: None where no case governs; alike: the others that differ from it by no more than both state; is_rounding:
+    whether the value is no more than its own stated error.
+    """
 
     value: float
     at: float | None
-    case: str
+    case: str | None
+    alike: tuple[str, ...] = ()
+    is_rounding: bool = False
+
+    @property
+    def governing(self) -> tuple[str, ...]:
+        """The cases that govern."""
+        return () if self.case is None else (self.case, *self.alike)
 
 
 class Enveloped(NamedTuple):
@@ -39,8 +54,7 @@ def envelope(runs: Mapping[str, KeptRun]) -> list[Enveloped]:
 
 
 def _enveloped(path: str, numbers: Mapping[str, KeptNumber | None]) -> Enveloped:
-    least: Bound | None = None
-    greatest: Bound | None = None
+    found: dict[str, KeptNumber] = {}
     unclear: dict[str, str] = {}
     unit = next(number.unit for number in numbers.values() if number is not None)
     for case, number in numbers.items():
@@ -52,8 +66,21 @@ def _enveloped(path: str, numbers: Mapping[str, KeptNumber | None]) -> Enveloped
         words = [value for value in (low, high, *values.values()) if isinstance(value, str) and value != BEYOND]
         if words:
             unclear[case] = words[0]
-        if isinstance(low, float) and (least is None or low < least.value):
-            least = Bound(low, number.least_at, case)
-        if isinstance(high, float) and (greatest is None or high > greatest.value):
-            greatest = Bound(high, number.greatest_at, case)
-    return Enveloped(path, unit, least, greatest, unclear)
+        found[case] = number
+    return Enveloped(path, unit, _bound(found, "least", -1.0), _bound(found, "greatest", 1.0), unclear)
+
+
+def _bound(numbers: Mapping[str, KeptNumber], word: str, side: float) -> Bound | None:
+    """The highest (side 1) or lowest (-1) of all cases; None where no case knows one."""
+    known = {case: value for case, number in numbers.items() if isinstance(value := number.values.get(word), float)}
+    if not known:
+        return None
+    case = max(known, key=lambda name: side * known[name])
+    value, error = known[case], numbers[case].error
+    noise = abs(value) <= error
+    alike = tuple(
+        name for name, other in known.items() if name != case and abs(value - other) <= error + numbers[name].error
+    )
+    if alike and len(alike) == len(numbers) - 1:
+        return Bound(value, None, None, (case, *alike), noise)
+    return Bound(value, getattr(numbers[case], f"{word}_at"), case, alike, noise)

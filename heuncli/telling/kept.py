@@ -1,5 +1,8 @@
 """The numbers of a run as they are kept to be compared with later ones: a golden file, one number a line, keys sorted.
 
+A file of format 1 holds of each quantity its ends, its extremes and eleven even instants; since format 2 also sums over
+its whole course and how well the instants of its extremes are known. What one of two does not hold is not compared.
+
 A value is a number, or a word in its place: `open` (the laws of rigid bodies leave it open), `unknown` (beside a
 singular pose), `beyond` (the horizon, past which nothing is claimed).
 """
@@ -14,7 +17,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from heuncli.errors import Finding
 
-FORMAT = 1  # of the file; a reader of another says so
+FORMAT = 2  # of the file that is written
+READABLE = (1, 2)  # a reader of another says so
 MOST_BYTES = 64_000_000
 OPEN: Final = "open"
 UNKNOWN: Final = "unknown"
@@ -37,6 +41,9 @@ class KeptNumber(KeptPart):
 
     error: what its run states of it, absolute, rounding included. What is the same throughout is `constant`. A place
     stands where the extreme is one along a run of cuts. drift: its rate at the last instant, where that is an event's.
+    least_at_error, greatest_at_error [s]: how far the instant may lie elsewhere. tenths: the means over uneven instants
+    of each tenth of the run; mean_square: over all of these. mean, moment: integrals over the run, of the quantity and
+    of it times the place in the run from -1 to 1; mean_error: what both may err by beside `error`.
     """
 
     unit: str
@@ -50,16 +57,23 @@ class KeptNumber(KeptPart):
     greatest: Value | None = None
     greatest_at: Number | None = None
     greatest_place: str | None = None
+    least_at_error: Number | None = None
+    greatest_at_error: Number | None = None
     even: list[Value] = []
     drift: Number | None = None
+    tenths: list[Value] = []
+    mean_square: Number | None = None
+    mean: Number | None = None
+    moment: Number | None = None
+    mean_error: Number | None = None
 
     @property
-    def values(self) -> dict[str, Value]:
+    def values(self) -> dict[str | int, Value]:
         """The values that decide, by their words; those at even instants by their number."""
         if self.constant is not None:
             return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)
         named = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
-        return {word: value for word, value in (*named.items(), *enumerate(self.even)) if value is not None}  # type: ignore[misc]
+        return {word: value for word, value in (*named.items(), *enumerate(self.even)) if value is not None}
 
 
 ENDS, BOUNDS = ("first", "last"), ("least", "greatest")
@@ -118,12 +132,17 @@ class KeptSpec(KeptPart):
 class KeptFile(KeptPart):
     """A golden file: the numbers of a spec as it stands and of its cases; the version; digests of what was read."""
 
-    format: Literal[1]
+    format: Literal[1, 2]
     heun: str
     spec: KeptSpec
     tables: dict[str, str] = {}
     base: KeptRun
     cases: dict[str, KeptRun] = {}
+
+    @property
+    def holds_courses(self) -> bool:
+        """Whether it holds what tells of whole courses; files of format 1 do not."""
+        return self.format > 1
 
 
 def text_of(kept: KeptFile) -> str:
@@ -147,8 +166,9 @@ def of_data(data: Any) -> KeptFile:
     """The file that stands in decoded JSON. Raises Finding [not-golden]."""
     if not isinstance(data, dict) or "format" not in data:
         raise Finding("not-golden", "this is no golden file: it has no 'format'", ANOTHER)
-    if data["format"] != FORMAT:
-        message = f"kept in format {data['format']!r:.40}; this version reads {FORMAT}"
+    if data["format"] not in READABLE:
+        readable = " and ".join(map(str, READABLE))
+        message = f"kept in format {data['format']!r:.40}; this version reads {readable}"
         raise Finding("not-golden", message, ANOTHER)
     try:
         return KeptFile.model_validate(data)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -13,7 +12,7 @@ from heuncli.report.digits import OPEN
 from heuncli.results import Array
 from heuncli.study.ask.expectations import Case
 
-NONE: Mapping[str, Any] = MappingProxyType({})
+NONE: Mapping[str, Any] = {}  # a dict, which one process can hand to another
 EXPECTED, KEPT = "expect", "golden"
 
 
@@ -21,7 +20,7 @@ class Outcome(NamedTuple):
     """One comparison: of what and when, expected, found and allowed in words, and if it fails why.
 
     kind: with what the spec expects, or with what was kept; case: the load case; block: the same for JSON; warned: a
-    thing that is told and does not fail; skipped: nothing was compared.
+    thing that is told and does not fail; skipped: nothing was compared; note: what is said of one that holds.
     """
 
     kind: str
@@ -37,6 +36,7 @@ class Outcome(NamedTuple):
     block: Mapping[str, Any] = NONE
     warned: bool = False
     skipped: bool = False
+    note: str = ""
 
     @property
     def passed(self) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from heuncli.report.series import walk_impulse
 from heuncli.results import Array, Block, CertainSum, Results
 from heuncli.results_schema import AT_A_BLOW, BLOWS, EVENTS
 from heuncli.telling.columns import SHOWN_AT_A_BLOW, KeptColumn, KeptScope, Told, along, columns_of_series, is_shown
+from heuncli.telling.course_sums import CourseSums
 from heuncli.telling.kept import (
     UNKNOWN,
     KeptBlow,
@@ -29,7 +31,10 @@ from heuncli.tolerances import WRITTEN
 
 
 class KeptCourse(NamedTuple):
-    """The columns of a run at its samples and at the even instants, and the extremes of some of them by their paths."""
+    """The columns of a run at its samples and at the even instants, and the extremes of some of them by their paths.
+
+    sums: what tells of the whole course of each column, where it was looked at.
+    """
 
     told: Told
     own: Mapping[str, KeptColumn]
@@ -37,6 +42,7 @@ class KeptCourse(NamedTuple):
     even_at: Array
     bounds: Mapping[str, KeptBounds]
     drift: Mapping[str, float]
+    sums: Mapping[str, CourseSums] = MappingProxyType({})
 
     def number(self, path: str) -> KeptNumber:
         """One quantity as it is kept."""
@@ -49,28 +55,35 @@ class KeptCourse(NamedTuple):
         same = {*ends, *even, *(extremes.get(word, ends[0]) for word in ("least", "greatest"))}
         if len(same) == 1:
             return KeptNumber(unit=column.unit, error=error, constant=ends[0])
-        drift = self.drift.get(path)
+        drift, sums = self.drift.get(path), self.sums.get(path)
         return KeptNumber(
-            unit=column.unit, error=error, first=ends[0], last=ends[1], even=even, drift=drift, **extremes
-        )
+            unit=column.unit, error=error, first=ends[0], last=ends[1], even=even, drift=drift, **extremes,
+            **(sums._asdict() if sums is not None else {}),
+        )  # fmt: skip
 
 
 class KeptBounds(NamedTuple):
-    """The lowest and highest of a quantity over a run, with instants and places; None: not searched."""
+    """The lowest and highest of a quantity over a run, with instants and places; None: not searched.
+
+    low_spread, high_spread [s]: how far the instants may lie elsewhere, where that is known.
+    """
 
     low: tuple[float, float, str | None] | None
     high: tuple[float, float, str | None] | None
+    low_spread: float | None = None
+    high_spread: float | None = None
 
     def kept(self, told: Told) -> dict[str, Any]:
         """As fields of what is kept."""
         fields: dict[str, Any] = {}
-        for word, bound in (("least", self.low), ("greatest", self.high)):
+        both = (("least", self.low, self.low_spread), ("greatest", self.high, self.high_spread))
+        for word, bound, spread in both:
             if bound is None:
                 continue
             value, at, place = bound
             fields[word] = told.value(value)
             if np.isfinite(value):
-                fields |= {f"{word}_at": at, f"{word}_place": place}
+                fields |= {f"{word}_at": at, f"{word}_at_error": spread, f"{word}_place": place}
         return fields
 
 
@@ -174,10 +187,10 @@ def _blow(impulse: Block, told: Told, scope: KeptScope) -> KeptBlow:
         )
         for column in columns
     }
-    return KeptBlow(time=at, time_error=_blow_error(impulse, told), names=list(impulse["names"]), numbers=numbers)
+    return KeptBlow(time=at, time_error=blow_error(impulse, told), names=list(impulse["names"]), numbers=numbers)
 
 
-def _blow_error(impulse: Block, told: Told) -> float:
+def blow_error(impulse: Block, told: Told) -> float:
     """How far the instant of a blow may be off [s]: the error of places over the speed at which they meet.
 
     That speed is not known; the largest jump of a centre's velocity is at most twice it where nothing gains energy.

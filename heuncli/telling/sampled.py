@@ -5,7 +5,7 @@ Of the scene it holds names, not kinds: whether a joint turns or slides follows 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -31,8 +31,11 @@ TWOFOLD = ("value", "rate")  # of a load: their unit depends on its kind
 OF_NO_KNOWN_KIND = ""  # the unit of a load that its block does not tell apart
 
 
-def run_of(data: Mapping[str, Any]) -> KeptRun:
-    """What a result holds, as it is kept. Raises Finding [not-a-result]."""
+def run_of(data: Mapping[str, Any], only: Sequence[int] | None = None) -> KeptRun:
+    """What a result holds, as it is kept; only: of these of its instants. Raises Finding [not-a-result].
+
+    Its errors are those of the whole result: they are shares of the largest number in it.
+    """
     lacking = [key for key in NEEDED if key not in data]
     if lacking:
         raise Finding("not-a-result", f"this is no result of heun run: it has no '{lacking[0]}'", ONE_FORM)
@@ -41,6 +44,9 @@ def run_of(data: Mapping[str, Any]) -> KeptRun:
         labels = _labels(results)
         page = page_of(results, labels, _magnitudes(results, labels))
         scope = KeptScope(frozenset(REPORT_OF[block] for block in REPORT_OF if getattr(results, block)), labels)
+        if only is not None:
+            results = _results(_at_instants(data, only))
+            page = page_of(results, labels, _magnitudes(results, labels))._replace(certain=page.certain)
         run = record_of(_course(page, results, scope), page, scope)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise Finding("not-a-result", f"this is no whole result of heun run: {error!s:.100}", ONE_FORM) from None
@@ -51,6 +57,45 @@ def run_of(data: Mapping[str, Any]) -> KeptRun:
         for path, number in run.numbers.items()
     }
     return run.model_copy(update={"numbers": numbers})
+
+
+def instants_of(data: Mapping[str, Any]) -> Array:
+    """The instants of a result that is whole, (n,)."""
+    return np.atleast_1d(np.asarray(data["time"], dtype=np.float64))
+
+
+def common_instants(one: Mapping[str, Any], other: Mapping[str, Any]) -> tuple[list[int], list[int]]:
+    """Which instants of one result are instants of another, and which of that they are."""
+    times, others = instants_of(one), instants_of(other)
+    same = SAME_INSTANT * max(float(np.ptp(times)), float(np.ptp(others)))
+    near = np.abs(times[:, None] - others[None, :]).argmin(axis=1) if len(others) else np.zeros(0, dtype=np.intp)
+    pairs = [(i, int(k)) for i, k in enumerate(near) if abs(times[i] - others[k]) <= same]
+    fresh = [pair for n, pair in enumerate(pairs) if not n or pair[1] > pairs[n - 1][1]]
+    return [i for i, _ in fresh], [k for _, k in fresh]
+
+
+def _at_instants(data: Mapping[str, Any], only: Sequence[int]) -> dict[str, Any]:
+    """A result at some of its instants alone."""
+    n = len(instants_of(data))
+
+    def part(keys: tuple[str, ...], value: Any) -> Any:
+        if isinstance(value, Mapping):
+            return {key: part((*keys, key), member) for key, member in value.items()}
+        row = quantity(keys)
+        timed = row is not None and row.timed and isinstance(value, list) and len(value) == n
+        return [value[i] for i in only] if timed else value
+
+    def summed(values: Any) -> Any:
+        return [values[i] for i in only] if isinstance(values, list) and len(values) == n else values
+
+    found = {key: part((key,), value) for key, value in data.items()}
+    found["time"] = [instants_of(data)[i] for i in only]
+    if "certain_sums" in data:
+        found["certain_sums"] = [
+            {"terms": {path: summed(x) for path, x in block["terms"].items()}, "value": summed(block["value"])}
+            for block in data["certain_sums"]
+        ]
+    return found
 
 
 def _results(data: Mapping[str, Any]) -> Results:

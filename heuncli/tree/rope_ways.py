@@ -137,7 +137,9 @@ def pins_at(mechanism: Mechanism, body: int, point: Array) -> list[tuple[int, Ar
             continue
         to = joint.b == body
         q, other, sign = (joint.q, joint.a, 1.0) if to else (joint.p, joint.b, -1.0)
-        axis = Z if mechanism.planar else joint.to_axis if to else joint.axis
+        axis = joint.to_axis if to else joint.axis
+        if mechanism.planar:  # the pin's own angle runs about z or about -z
+            axis = math.copysign(1.0, float(axis[2])) * Z
         arm = point - q
         off = arm - (arm @ axis) * axis
         if off @ off <= (tolerances.ON_AXIS * (1.0 + math.sqrt(float(arm @ arm)))) ** 2:

@@ -92,7 +92,7 @@ def prepared(name: str, text: str | None) -> Scene | None:
     if setup.method is None or setup.method.determined:
         return None
     times = np.array(spec.analysis.times)
-    jumps = discontinuities_of(setup.scene.mechanism, 0.0, float(times[-1]))
+    jumps = discontinuities_of(setup.scene.mechanism, float(times[-1]))
     method = method_of("Radau9" if name in STIFF_SCENES else DEFAULT)
     for local in (FINEST * 10.0**k for k in range(4)):
         with suppress(HeunError):

@@ -54,12 +54,14 @@ def test_the_width_of_a_line_is_the_one_that_python_finds(
             raise size
         return os.terminal_size(size)
 
-    monkeypatch.delenv("COLUMNS", raising=False)
-    if given is not None:
-        monkeypatch.setenv("COLUMNS", given)
-    monkeypatch.setattr("os.get_terminal_size", found)
-    monkeypatch.setattr("sys.__stdout__", sys.stdin)
-    assert line_width() == shutil.get_terminal_size().columns
+    with monkeypatch.context() as terminal:  # this test itself is told on another one
+        terminal.delenv("COLUMNS", raising=False)
+        if given is not None:
+            terminal.setenv("COLUMNS", given)
+        terminal.setattr("os.get_terminal_size", found)
+        terminal.setattr("sys.__stdout__", sys.stdin)
+        line, ours = line_width(), shutil.get_terminal_size().columns
+    assert line == ours
 
 
 def test_what_goes_wrong_is_told_by_the_rest(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -29,7 +30,7 @@ def asked(shell: str, line: str, folder: Path) -> list[str]:
     own = {"bash": {"COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)},
            "zsh": {"_TYPER_COMPLETE_ARGS": line},
            "fish": {"_TYPER_COMPLETE_ARGS": line, "_TYPER_COMPLETE_FISH_ACTION": "get-args"}}[shell]  # fmt: skip
-    env = {**os.environ, "_HEUN_COMPLETE": f"complete_{shell}", **own}
+    env = {**os.environ, "_HEUN_COMPLETE": f"complete_{shell}", "COLUMNS": "20", **own}  # of any terminal
     done = subprocess.run([sys.executable, "-m", "heuncli"], cwd=folder, env=env, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     if shell == "zsh":
@@ -72,3 +73,38 @@ def test_several_reports_are_completed_behind_each_other(beside: Path) -> None:
 
 def test_dotted_keys_of_entries(beside: Path) -> None:
     assert "bodies.bar.mass=" in asked("bash", "heun run scene.yaml --set bodies.bar.", beside)
+
+
+HOSTILE = [
+    "$(touch x)",
+    "`id`",
+    "x;id",
+    "a\nb",
+    "\u202ey",
+    "\x1b[2J",
+    'q"c',
+    "it's",
+    "a|b",
+    "a&b",
+    "a>b",
+    "a*",
+    "~root",
+    "a\\b",
+]
+
+
+def test_nothing_is_offered_that_a_shell_would_run(beside: Path) -> None:
+    entries = {name: {"mass": 1} for name in (*HOSTILE, "rod")}
+    data = {
+        "parameters": dict.fromkeys(HOSTILE, 1) | {"n": 1},
+        "bodies": entries,
+        "joints": entries,
+        "cases": entries,
+    }
+    beside.joinpath("scene.yaml").write_text(json.dumps(data))
+    for name in HOSTILE:
+        (beside / f"{name}.yaml").write_text("")
+    assert set(asked("bash", "heun run ", beside)) == {"folder/", "scene.yaml", "wrong.yaml"}
+    assert asked("bash", "heun run scene.yaml --set n", beside) == ["n="]
+    assert set(asked("bash", "heun run scene.yaml --case ", beside)) == {"rod", "all"}
+    assert asked("bash", "heun run scene.yaml --only joints.", beside) == ["joints.rod"]

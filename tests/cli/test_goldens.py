@@ -167,7 +167,7 @@ def cut_off(text: str) -> str:
 
 
 def of_another_format(text: str) -> str:
-    return text.replace('"format": 1', '"format": 2')
+    return text.replace('"format": 2', '"format": 3')
 
 
 def of_another_spec(text: str) -> str:
@@ -179,7 +179,7 @@ def of_another_spec(text: str) -> str:
     ("spoilt", "told"),
     [
         (lambda text: "hello", "this is not JSON"), (cut_off, "ends before it is complete"),
-        (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1"),
+        (lambda text: "[1]", "no golden file"), (of_another_format, "this version reads 1 and 2"),
         (of_another_spec, "kept of another spec: other.yaml"),
         (lambda text: text.replace('"status"', '"stat"'), "base.sta"),
     ],

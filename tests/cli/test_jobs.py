@@ -8,14 +8,17 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
 
 from heuncli.cli import jobs
 from heuncli.commands.check import command
+from heuncli.errors import LimitError
+from heuncli.variants.asking import Answer, Asker
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
-from tests.shared.processes import heard
+from tests.shared.folders import SPECS
 
 
 @pytest.fixture
@@ -49,7 +52,7 @@ def test_a_process_that_dies_costs_its_one_spec(heun: Heun, many: Path, monkeypa
     monkeypatch.setattr(command, "check", dying)
     done = heun("check", "many", "--jobs", "3", "--format", "json")
     assert done.returncode == 70
-    assert "many/04.yaml: the process that checked it was killed by signal 9 [bug]" in done.stderr
+    assert "many/04.yaml: the process that checked it was killed by signal 9, twice [bug]" in done.stderr
     assert done.stdout.count('"file"') == 12
 
 
@@ -99,10 +102,9 @@ def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> N
         text = HANGING.replace("top: [0, 0, 0]}", "top: [0, 0, 0]}, orientation: {axis: [1, 0, 0], angle: 60 deg}")
         (tmp_path / f"{number}.yaml").write_text(text + "analysis: {duration: 100000, samples: 11}\n")
     words = [sys.executable, "-m", "heuncli", "check", ".", "--jobs", "2", "--golden", "g", "--update", "--force"]
-    with heard():
-        process = subprocess.Popen(
-            words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
-        )
+    process = subprocess.Popen(
+        words, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True
+    )
     with process:
         time.sleep(1.5)
         os.killpg(process.pid, signal.SIGINT)
@@ -114,3 +116,49 @@ def test_an_interrupt_ends_all_processes_and_leaves_no_file(tmp_path: Path) -> N
             time.sleep(0.05)
         assert at_work_in(process.pid) == []
     assert sorted(path.name for path in tmp_path.iterdir()) == [f"{number}.yaml" for number in range(4)]
+
+
+@pytest.mark.parametrize("jobs_", [1, 3])
+def test_what_a_process_was_at_that_dies_is_tried_once_more(tmp_path: Path, jobs_: int) -> None:
+    """Number 3 ends one process, number 5 all of them, number 7 at its time limit."""
+
+    def work(number: int) -> str:
+        if number == 7:
+            os._exit(LimitError.exit_code)
+        if number == 5 or (number == 3 and not (tmp_path / "tried").exists()):
+            (tmp_path / "tried").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        (tmp_path / f"{number}").touch(exist_ok=False)
+        return f"{number} answered"
+
+    found = list(jobs.each(work, range(9), jobs_, lambda number, died: f"{number} {died.how}", apart=True))
+    assert found[5] == "5 killed by signal 9" and found[7] == f"7 ended with exit code {LimitError.exit_code}"
+    assert [text for number, text in enumerate(found) if number not in (5, 7)] == [
+        f"{number} answered" for number in (0, 1, 2, 3, 4, 6, 8)
+    ]
+
+
+def test_a_process_of_a_search_that_dies_costs_no_variant(
+    heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = ("tune", "hanging.yaml", "m=1:2kg", "--minimise", "joints.pivot.force.z", "--evaluations", "8")
+    undisturbed = heun(*words, "--jobs", "2")
+    answer = Asker.answer
+
+    def dying(self: Asker, values: Mapping[str, str]) -> Answer:
+        if not (folder / "tried").exists():
+            (folder / "tried").touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return answer(self, values)
+
+    monkeypatch.setattr(Asker, "answer", dying)
+    assert heun(*words, "--jobs", "2") == undisturbed
+    assert undisturbed.returncode == 0 and (folder / "tried").exists()
+
+
+def test_a_spec_that_is_not_solved_goes_from_process_to_process(heun: Heun, folder: Path) -> None:
+    """With what it expects, which is not compared."""
+    text = (SPECS / "broken" / "does-not-fit.yaml").read_text(encoding="utf-8")
+    (folder / "unsolved.yaml").write_text(text + "expect: [{of: energy.kinetic, is: 0, at: 0}]\n", encoding="utf-8")
+    one, other = (heun("check", "unsolved.yaml", "hanging.yaml", "--jobs", n) for n in ("1", "2"))
+    assert one == other and one.returncode == 3

@@ -156,6 +156,41 @@ def test_a_script_for_matlab(heun: Heun, pendulum: str, folder: Path) -> None:
     assert [[float(x) for x in row.split()] for row in rows] == linear["A"]
 
 
+WITHOUT_A_VALUE = {
+    "bushing": "bushing, from: ground.O, to: a.o, turning: 20",
+    "spring": "spring, from: ground.P, to: a.c, stiffness: 20, length: 0",
+    "turn spring": "turn_spring, joint: p, stiffness: 20, angle: 0",
+    "damper": "damper, joint: p, coefficient: 20",
+    "distributed": "distributed, on: a, from: o, to: c, vector: [0, -1, 0]",
+    "friction of what presses": "friction, joint: p, coefficient: 0.1, radius: 0.01, speed: 0.1",
+}
+ON_A_PIN = """
+heun: 1
+ground: {{points: {{O: [0, 0, 0], P: [2, 0, 0]}}}}
+bodies:
+  a: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0], c: [1, 0, 0]}}}}
+joints: {{p: {{type: pin, from: ground.O, to: a.o, axis: [0, 0, 1]}}}}
+forces:
+  b: {{type: {load}}}
+  f: {{type: torque, joint: p, value: 1}}
+analysis: {{type: state}}
+"""
+
+
+@pytest.mark.parametrize("kind", WITHOUT_A_VALUE)
+def test_loads_without_a_value_are_no_inputs(heun: Heun, folder: Path, kind: str) -> None:
+    (folder / "pin.yaml").write_text(ON_A_PIN.format(load=WITHOUT_A_VALUE[kind]))
+    refused = heun("lagrange", "pin.yaml", "--state-space", "--inputs", "b")
+    assert refused.returncode == 3 and "hint:" in refused.stderr
+    if kind.startswith("friction"):  # hangs on the inputs: no state space at all
+        return
+    assert "known inputs: f" in refused.stderr
+    found = json.loads(heun("lagrange", "pin.yaml", "--state-space", "--format", "json").stdout)["state_space"]
+    assert found["inputs"] == ["f"] and found["B"] == [[0.0], [1.0]]
+    if kind == "bushing":
+        assert found["A"] == [[0.0, 1.0], [-20.0, 0.0]]
+
+
 @pytest.mark.heavy
 def test_over_in_all_forms(heun: Heun) -> None:
     spec, words = str(ROOT / "specs" / "slider_crank.yaml"), "main.angle=0:90deg/4"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import signal
 import subprocess
@@ -10,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from heuncli.cli import files
 from tests.shared.folders import ROOT
 
 # Sends itself a signal, twice, when a module is looked for or a function of `os` is called; then runs the command.
@@ -47,15 +49,11 @@ main()
 
 def shot(number: int, where: str, folder: Path) -> subprocess.CompletedProcess[str]:
     """`heun run hanging.yaml -o out.json`, and what became of it."""
-    signal_was = signal.signal(signal.SIGINT, signal.default_int_handler)  # what is ignored is ignored by children, too
-    try:
-        return subprocess.run(
-            [sys.executable, "-c", SHOT, str(int(number)), where, "run", "hanging.yaml", "-o", "out.json"],
-            capture_output=True, text=True, cwd=folder, timeout=60, check=False,
-            env={**os.environ, "PYTHONPATH": str(ROOT)},
-        )  # fmt: skip
-    finally:
-        signal.signal(signal.SIGINT, signal_was)
+    return subprocess.run(
+        [sys.executable, "-c", SHOT, str(int(number)), where, "run", "hanging.yaml", "-o", "out.json"],
+        capture_output=True, text=True, cwd=folder, timeout=60, check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
 
 
 @pytest.mark.parametrize("where", ["heuncli.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
@@ -80,8 +78,82 @@ def test_a_signal_while_a_file_is_written_leaves_the_old_one(
     assert (folder / "out.json").read_text() == "old"
 
 
-def test_a_signal_once_it_is_written_leaves_the_new_one(folder: Path) -> None:
-    done = shot(signal.SIGTERM, "os.replace", folder)
+@pytest.mark.parametrize("old", [None, "old"])
+def test_a_signal_once_it_is_written_leaves_the_new_one(folder: Path, old: str | None) -> None:
+    if old is not None:
+        (folder / "out.json").write_text(old)
+    done = shot(signal.SIGTERM, "os.link" if old is None and hasattr(os, "O_TMPFILE") else "os.replace", folder)
     assert done.returncode == 143
     assert (folder / "out.json").read_text().endswith("}\n")
     assert not list(folder.glob(".heun*"))
+
+
+# Writes half of a file and dies, by a signal that nothing is done about.
+KILLED = """\
+import os, signal, sys
+from heuncli.cli import files
+if sys.argv[1] == "named":
+    del os.O_TMPFILE
+def pieces():
+    yield b"half"
+    os.kill(os.getpid(), signal.SIGKILL)
+files.write(pieces(), "out.json")
+"""
+
+
+def killed(folder: Path, how: str) -> list[Path]:
+    """Names that a process leaves which is killed while it writes."""
+    before = set(folder.iterdir())
+    done = subprocess.run(
+        [sys.executable, "-c", KILLED, how], cwd=folder, check=False, env={**os.environ, "PYTHONPATH": str(ROOT)}
+    )
+    assert done.returncode == -signal.SIGKILL
+    return [path for path in folder.iterdir() if path not in before]
+
+
+@pytest.mark.parametrize("old", [None, "old"])
+def test_a_killed_process_leaves_nothing(tmp_path: Path, old: str | None) -> None:
+    if old is not None:
+        (tmp_path / "out.json").write_text(old)
+    left = killed(tmp_path, "unnamed")
+    if left and not hasattr(os, "O_TMPFILE"):
+        pytest.skip("files without a name are not to be had here")
+    assert left == []
+    assert old is None or (tmp_path / "out.json").read_text() == old
+
+
+def test_what_a_killed_process_leaves_the_next_one_removes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no file is without a name: what is old, of this user, and written by nobody."""
+    monkeypatch.setattr(files, "_looked_into", set())
+    (left,) = killed(tmp_path, "named")
+    others = [tmp_path / name for name in (".heun-0", ".heun-" + "a" * 16, ".heun-" + "b" * 16, ".heun-" + "c" * 16)]
+    others[2].symlink_to("there is no such file")
+    for path in (others[0], others[1], others[3]):
+        path.write_text("another's")
+    for path in (left, others[0], others[3]):
+        os.utime(path, (0.0, 0.0))
+    with others[3].open() as at_work:
+        fcntl.flock(at_work, fcntl.LOCK_EX)
+        files.write(b"whole", str(tmp_path / "out.json"))
+    assert sorted(tmp_path.iterdir()) == sorted([*others, tmp_path / "out.json"])
+    assert (tmp_path / "out.json").read_bytes() == b"whole"
+
+
+@pytest.mark.parametrize("named", [False, True])
+@pytest.mark.parametrize("old", [None, 0o640])
+def test_rights_are_those_of_the_old_file_or_the_usual(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, named: bool, old: int | None
+) -> None:
+    if named:
+        monkeypatch.delattr(os, "O_TMPFILE", raising=False)
+    path = tmp_path / "out.json"
+    if old is not None:
+        path.write_text("old")
+        path.chmod(old)
+    before = os.umask(0o027)
+    try:
+        files.write(b"new", str(path))
+    finally:
+        os.umask(before)
+    assert path.stat().st_mode & 0o777 == (0o640 if old is None else old)
+    assert [one.name for one in tmp_path.iterdir()] == ["out.json"]

@@ -29,7 +29,6 @@ from heuncli.variants.plans import Plan, plan_of
 from heuncli.version import VERSION
 from tests.shared.command import TURNED, Heun
 from tests.shared.folders import ROOT
-from tests.shared.processes import heard
 
 pytest.importorskip("distributed", reason="pip install 'heuncli[dask]'")
 from tests.shared.dask_cluster import OTHER_TEXT, DaskCluster
@@ -204,11 +203,10 @@ def test_an_interrupt_leaves_the_cluster_as_it_was(dask: DaskCluster, folder: Pa
     (folder / "swinging.yaml").write_text(SWINGING)
     dask.with_workers(1)
     words = ["sweep", "swinging.yaml", "m=1:2/2000", "--measure", FORCE, "--dask", dask.address, "--store", "s.sqlite"]
-    with heard():
-        process = subprocess.Popen(
-            [sys.executable, "-m", "heuncli", *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-            text=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
-        )  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-m", "heuncli", *words], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )  # fmt: skip
     begun = time.monotonic()
     while not dask.at_work()[0]:
         assert time.monotonic() < begun + 60

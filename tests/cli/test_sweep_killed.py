@@ -15,7 +15,6 @@ import pytest
 from heuncli.commands.sweep import workers
 from heuncli.variants.asking import Asker
 from tests.shared.command import Heun
-from tests.shared.processes import heard
 from tests.shared.sweeps import (
     COUNT,
     DURATION,
@@ -83,7 +82,7 @@ def test_an_interrupt_keeps_what_is_done(
     swinging: Path, undisturbed: Undisturbed, number: signal.Signals, word: str, store: bool
 ) -> None:
     """Rows that no store keeps are told."""
-    with heard(), begin(swinging, "--jobs", "2", *(("--store", STORE) if store else ())) as process:
+    with begin(swinging, "--jobs", "2", *(("--store", STORE) if store else ())) as process:
         while len(workers_of(process.pid)) < 2:
             assert process.poll() is None
             time.sleep(0.01)

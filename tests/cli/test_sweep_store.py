@@ -225,6 +225,18 @@ def test_a_store_stands_where_nothing_else_does(heun: Heun, folder: Path, words:
     assert (folder / "hanging.yaml").read_text() == before
 
 
+@pytest.mark.parametrize(
+    "name", [":memory:", "file:x.sqlite?mode=memory", "file::memory:", "a%20b#c?d.sqlite", "-s.sqlite"]
+)
+def test_whatever_its_name_a_store_is_a_file(heun: Heun, folder: Path, solved: list[dict[str, str]], name: str) -> None:
+    stored = f"--store={name}"
+    first = heun(*MASSES, stored)
+    assert first.returncode == 0
+    assert (folder / name).is_file()
+    assert heun(*MASSES, stored) == first
+    assert len(solved) == 5
+
+
 def full(folder: Path, more: str) -> Done:
     """A sweep where no file may have more than some hundred kilobytes."""
     line = f"trap '' XFSZ; ulimit -f 600; heun sweep hanging.yaml m=1:3/400 --measure joints.pivot.force.z {more}"

@@ -6,9 +6,12 @@ import os
 import subprocess
 import sys
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
+
+from tests.shared.command import Heun
 
 DIVIDES = """
 import sys
@@ -35,3 +38,16 @@ def test_it_is_an_error_in_tests_and_in_what_they_start() -> None:
         np.ones(1) / np.zeros(1)
     done = subprocess.run([sys.executable, "-c", DIVIDES], capture_output=True, text=True, check=False)
     assert done.returncode == 1 and "RuntimeWarning" in done.stderr
+
+
+def test_a_deprecation_between_other_packages_ends_nothing(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An older typer uses what a newer click deprecates; under `python -W error` that was told as a bug of heun."""
+
+    def deprecated(words: Sequence[str]) -> int:
+        warnings.warn("'click.utils.get_binary_stream' is deprecated", DeprecationWarning, stacklevel=1)
+        return 2
+
+    monkeypatch.setattr("heuncli.cli.app.read", deprecated)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert heun("runn") == (2, "", "")

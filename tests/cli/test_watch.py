@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from tests.shared.command import HANGING, Heun
-from tests.shared.processes import heard
 
 TABLED = (
     HANGING
@@ -28,8 +27,7 @@ class Watching:
         self.told = folder / "told.txt"
         self.output = self.told.open("w")
         words = [sys.executable, "-u", "-m", "heuncli", "run", "scene.yaml", *WORDS]
-        with heard():
-            self.process = subprocess.Popen(words, cwd=folder, stdout=self.output, stderr=subprocess.STDOUT)
+        self.process = subprocess.Popen(words, cwd=folder, stdout=self.output, stderr=subprocess.STDOUT)
 
     def wait_for(self, text: str, times: int = 1) -> None:
         """Until it was written so often."""

@@ -99,7 +99,7 @@ def asked(setup: Setup) -> Array:
 
 
 def jumps(setup: Setup) -> list[float]:
-    return discontinuities_of(setup.scene.mechanism, 0.0, float(asked(setup)[-1]))
+    return discontinuities_of(setup.scene.mechanism, float(asked(setup)[-1]))
 
 
 def trajectory(setup: Setup, times: Array, tolerance: float | None = None) -> Trajectory:

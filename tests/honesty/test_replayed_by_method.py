@@ -55,7 +55,7 @@ def runner_of(scene: str) -> tuple[Runner, float]:
 def run_of(scene: str, method: Method, times: Array, *, keeping: bool = False) -> Trajectory:
     """A coarse run, whose steps are long; keeping: the polynomials of those that made one."""
     runner, end = runner_of(scene)
-    jumps = discontinuities_of(runner.layout.mechanism, 0.0, end)
+    jumps = discontinuities_of(runner.layout.mechanism, end)
     local = end / COUNT if method.fixed else 1e-5
     return runner.trajectory(MotionTask(times, local, discontinuities=jumps, method=method, keeping=keeping))
 

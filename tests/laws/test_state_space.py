@@ -98,3 +98,36 @@ def test_what_a_drive_exerts_holds_it(driven: str) -> None:
     assert np.allclose(held.state_space.offset[len(free) :], given.accelerations[free], rtol=1e-11, atol=1e-11)
     jump = told(moved, instant_of(moved, None, None), LagrangeQuestion()).accelerations - given.accelerations
     assert np.allclose(given.state_space.B[len(jump) :, 0], jump, rtol=1e-11, atol=1e-11)
+
+
+PENDULUM = """
+heun: 1
+space: planar
+gravity: [1.3, -9.81]
+ground: {points: {O: [0.2, 0.1]}}
+bodies:
+  a: {mass: 1.3, center: [0.4, 0.13], inertia: 0.09, points: {o: [0, 0], e: [1.1, 0]}}
+  b: {mass: 0.7, center: [0.3, -0.21], inertia: 0.05, points: {o: [0, 0], tip: [0.9, 0.2]}}
+joints:
+  p: {type: pin, from: ground.O, to: a.o, initial: {angle: 0.7, rate: 1.9}}
+  q: {type: pin, from: a.e, to: b.o, initial: {angle: -1.4, rate: -2.6}}
+forces: {f: {type: force, on: b.tip, vector: [3, -2]}}
+analysis: {type: state}
+"""
+
+
+def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
+    """z = L exp(i p) + c exp(i (p + q)) of the tip: dz'/dp = i z', dz'/dq = -(p' + q') c exp(i (p + q))."""
+    spec = load("scene.yaml", PENDULUM)
+    outputs = ("b.tip.x", "b.tip.y", "b.tip.vx", "b.tip.vy")
+    space = told(spec, instant_of(spec, None, None), LagrangeQuestion(state_space=True, outputs=outputs)).state_space
+    assert space is not None
+    first, second = 1.1 * np.exp(0.7j), (0.9 + 0.2j) * np.exp(1j * (0.7 - 1.4))
+    by_pose = np.array([1j * (first + second), 1j * second])
+    velocity = 1j * 1.9 * first + 1j * (1.9 - 2.6) * second
+    of_velocity = np.array([1j * velocity, -(1.9 - 2.6) * second])
+    rows = [by_pose.real, by_pose.imag, of_velocity.real, of_velocity.imag]
+    none = np.zeros(2)
+    rates = [none, none, by_pose.real, by_pose.imag]
+    wanted = np.array([np.concatenate(pair) for pair in zip(rows, rates, strict=True)])
+    assert np.abs(space.C - wanted).max() <= 1e-14 * np.abs(wanted).max() * 10.0

@@ -18,6 +18,7 @@ from heuncli import memory_left
 from heuncli.study.solve import history
 from tests.shared.command import SPEC_TEXTS
 from tests.shared.folders import SPECS
+from tests.shared.processes import interruptible
 
 SOME = [SPECS / f"{name}.yaml" for name in ("double", "chain", "struck_door", "overhang", "bouncing_ball", "rotor")]
 pytestmark = pytest.mark.heavy
@@ -100,8 +101,8 @@ def test_an_interrupt_leaves_nothing_broken(monkeypatch: pytest.MonkeyPatch) -> 
                 ask()
     assert text(path) == whole and study["energy.kinetic"].at(0.0123) == before
     timer = threading.Timer(0.02, signal.raise_signal, [signal.SIGINT])
-    timer.start()
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt), interruptible():
+        timer.start()
         while True:
             heuncli.solve(path)
     timer.join()

@@ -31,7 +31,7 @@ from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EVERYTHING, Selection, asked_by
 from heuncli.study.workflow import solve
 from heuncli.telling.keep import keep
-from heuncli.telling.kept import ANOTHER, MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
+from heuncli.telling.kept import ANOTHER, FORMAT, MOST_BYTES, KeptFile, KeptRun, KeptSpec, read_kept
 from heuncli.telling.outcomes import EXPECTED, Outcome, outcome_of
 from heuncli.telling.selection import told_by_default
 from heuncli.version import VERSION
@@ -97,6 +97,7 @@ def _compared(task: Task, request: CheckRequest, jobs: int, items: list[tuple[st
         outcomes += more
         if old is None and not request.update and not request.strict and not request.quiet:
             said.append(f"warning: {shown(path)}: {NO_FILE}")
+        said += [f"note: {shown(path)}: {outcome.note}" for outcome in more if outcome.note and not request.quiet]
     alarm.disarm()
     return Checked(path, tuple(outcomes), said=tuple(said), golden=golden)
 
@@ -144,7 +145,7 @@ def _file(task: Task, spec: Spec, runs: Mapping[str, KeptRun]) -> KeptFile:
     tables = {name: _digest(table.x.tobytes() + table.y.tobytes()) for name, table in spec.tables.items()}
     cases = {name: run for name, run in runs.items() if name}
     of = KeptSpec(path=task.name, sha256=spec.sha256)
-    return KeptFile(format=1, heun=VERSION, spec=of, tables=tables, base=runs[""], cases=cases)
+    return KeptFile(format=FORMAT, heun=VERSION, spec=of, tables=tables, base=runs[""], cases=cases)
 
 
 def _even_at(old: KeptFile | None, case: str) -> Sequence[float]:

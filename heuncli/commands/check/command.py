@@ -107,7 +107,7 @@ def _all(chosen: Sequence[Found], kept: dict[str, str], request: CheckRequest) -
     work = partial(check, request=request, jobs=at_once)
     is_last = _fails if request.first else _none
     with progress(request.quiet) as tell:
-        for one in jobs.each(work, tasks, at_once, _dead, is_last):
+        for one in jobs.each(work, tasks, at_once, _dead, is_last, apart=request.time_limit_each is not None):
             if one.refused:
                 raise UsageError(*one.problems)
             checked.append(one)
@@ -131,12 +131,13 @@ def _none(one: Checked) -> bool:
     return False
 
 
-def _dead(task: Task, how: str) -> Checked:
+def _dead(task: Task, died: jobs.Died) -> Checked:
     """What stands for a spec whose process died."""
     path = task.found.path
     hint = "the memory may not have sufficed: --jobs 1; else please report it with the spec"
-    problem = Problem("bug", f"the process that checked it was {how}", hint=hint)
-    return Checked(path, problems=(problem,), error=BUG, said=tuple(lines_of([problem], f"{path}: ")))
+    problem = died.problem("checked it", hint)
+    error = died.code if died.is_time_up else BUG
+    return Checked(path, problems=(problem,), error=error, said=tuple(lines_of([problem], f"{path}: ")))
 
 
 def _say_slowest(checked: Sequence[Checked], most: int | None) -> None:

@@ -7,13 +7,15 @@ from typing import Any
 
 from heuncli.commands.check.checked import Golden
 from heuncli.commands.check.request import CheckRequest
+from heuncli.telling.change import Change
 from heuncli.telling.change_words import number_text, why
-from heuncli.telling.changes import EXTRA, MISSING, Change, changes
+from heuncli.telling.changes import EXTRA, MISSING, changes
 from heuncli.telling.kept import KeptFile, KeptRun, text_of
 from heuncli.telling.outcomes import KEPT, Outcome
 from heuncli.version import VERSION
 
 NO_FILE = "no golden file: --update writes it"
+HOLDS_LESS = "kept by an earlier version without means, so less is compared; --update renews it"
 
 
 def kept_outcomes(
@@ -27,12 +29,25 @@ def kept_outcomes(
         block = {"golden": file, "passed": not request.strict, "message": NO_FILE}
         return [Outcome(KEPT, file, NO_FILE, block=block, warned=not request.strict)], Golden(file)
     found = [(case, change) for case, run, was in _runs(old, new) for change in _of(was, run, request)]
-    if not found:
-        block = {"golden": file, "passed": True, "message": "as kept"}
-        return [Outcome(KEPT, file, None, block=block)], Golden(file)
     since = _since(old, new)
+    if not found:
+        return _unchanged(file, old, new, request)
     outcomes = [_outcome(file, case, change, since, request.update) for case, change in found]
     return outcomes, Golden(file, text_of(new) if request.update else None)
+
+
+def _unchanged(file: str, old: KeptFile, new: KeptFile, request: CheckRequest) -> tuple[list[Outcome], Golden]:
+    """The outcome where no number left its bounds, and what --update renews then: the digests, or what a file of an
+    earlier format does not hold."""
+    notes = [f"{changed}, and no number left its bounds"] if (changed := _changed_files(old, new)) else []
+    notes += [] if old.holds_courses else [HOLDS_LESS]
+    text = None
+    if request.update and notes:
+        kept = old.model_copy(update={"spec": new.spec, "tables": new.tables})
+        text = text_of(kept if old.holds_courses else new)
+    note = "; ".join(notes)
+    block = {"golden": file, "passed": True, "message": note or "as kept"} | ({"written": True} if text else {})
+    return [Outcome(KEPT, file, None, block=block, note=note)], Golden(file, text)
 
 
 def _runs(old: KeptFile, new: KeptFile) -> Iterator[tuple[str, KeptRun | None, KeptRun | None]]:
@@ -50,14 +65,19 @@ def _of(old: KeptRun | None, new: KeptRun | None, request: CheckRequest) -> list
 
 def _since(old: KeptFile, new: KeptFile) -> str:
     """What else is not as it was when the numbers were kept."""
+    changed = _changed_files(old, new)
+    version = f"kept by version {old.heun}" if old.heun != VERSION else ""
+    return "; ".join(part for part in (changed, version) if part)
+
+
+def _changed_files(old: KeptFile, new: KeptFile) -> str:
+    """Which of the spec and its tables changed since the numbers were kept."""
     parts = ["the spec"] if old.spec.sha256 != new.spec.sha256 else []
     tables = sorted(
         name for name in old.tables.keys() | new.tables.keys() if old.tables.get(name) != new.tables.get(name)
     )
     parts += [f"table {name}" for name in tables]
-    changed = f"{' and '.join(parts)} changed since it was kept" if parts else ""
-    version = f"kept by version {old.heun}" if old.heun != VERSION else ""
-    return "; ".join(part for part in (changed, version) if part)
+    return f"{' and '.join(parts)} changed since it was kept" if parts else ""
 
 
 def _outcome(file: str, case: str, change: Change, since: str, written: bool) -> Outcome:

@@ -65,7 +65,8 @@ def _all(chosen: Sequence[str], request: CheckRequest) -> list[CheckedCase]:
     is_last = _fails if request.first else _none
     checked: list[CheckedCase] = []
     with progress(request.quiet) as tell:
-        for one in jobs.each(partial(check, request=request), chosen, at_once, _dead, is_last):
+        apart = request.time_limit_each is not None
+        for one in jobs.each(partial(check, request=request), chosen, at_once, _dead, is_last, apart=apart):
             checked.append(one)
             for line in one.checked.said:
                 say(line)
@@ -100,8 +101,9 @@ def _none(one: CheckedCase) -> bool:
     return False
 
 
-def _dead(name: str, how: str) -> CheckedCase:
+def _dead(name: str, died: jobs.Died) -> CheckedCase:
     """What stands for a case whose process died."""
-    problem = Problem("bug", f"the process that checked it was {how}", hint="please report it")
+    problem = died.problem("checked it", "please report it")
     said = tuple(lines_of([problem], f"{name}: "))
-    return CheckedCase(case_of(name), (), Checked(PLACE.format(name), (), (problem,), BUG, said=said))
+    error = died.code if died.is_time_up else BUG
+    return CheckedCase(case_of(name), (), Checked(PLACE.format(name), (), (problem,), error, said=said))

@@ -10,6 +10,7 @@ from heuncli.commands.check.folders import PassedBy
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
+from heuncli.report.markdown_text import escape_line, fence_text
 from heuncli.report.plurals import count
 from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
 from heuncli.report.workflow_lines import Annotation, lines
@@ -37,10 +38,12 @@ def table(told: AllChecked) -> str:
 def in_markdown(told: AllChecked) -> str:
     """The same for the summary of a job."""
     failed = any(one.exit_code for one in told.checked) or (told.strict and bool(told.orphans))
-    head = f"### heun check: {'failed' if failed else 'passed'}\n\n{summary(told)}\n"
+    notes = [f"{one.path}: {outcome.note}" for one, outcome in _all(told) if outcome.note]
+    head = f"### heun check: {'failed' if failed else 'passed'}\n\n{escape_line(summary(told))}\n"
+    head += "".join(f"\n{escape_line(note)}\n" for note in notes)
     tables = "".join("\n" + markdown(part) for part in _tables(told))
     errors = [str(problem) for one in told.checked for problem in one.problems]
-    return head + tables + "".join(f"\n```text\n{text}\n```\n" for text in errors)
+    return head + tables + "".join(f"\n{fence_text(text)}\n" for text in errors)
 
 
 def _tables(told: AllChecked) -> list[TextTable]:
@@ -116,6 +119,8 @@ def _annotations(told: AllChecked) -> Iterator[Annotation]:
             hint = f"\nhint: {problem.hint}" if problem.hint else ""
             yield Annotation("error", f"heun: {problem.code}", f"{problem.message}{hint}", *place)
         for outcome in one.outcomes:
+            if outcome.note:
+                yield Annotation("notice", "heun: golden", outcome.note, one.path)
             if outcome.failure is None or outcome.skipped:
                 continue
             kind = "warning" if outcome.warned else "error"

@@ -8,13 +8,17 @@ from heuncli.cli.guard import require_other_file
 from heuncli.cli.output import emit, say
 from heuncli.cli.target import format_of
 from heuncli.commands.diff.request import FORMATS, DiffRequest
-from heuncli.commands.diff.sides import RESULT, Side, require_alike, side_of, solved
+from heuncli.commands.diff.sides import RESULT, Side, at_common_instants, require_alike, side_of, solved
 from heuncli.commands.diff.told import FORMS, Difference, ordered
-from heuncli.telling.changes import EXTRA, MISSING, Change, changes
+from heuncli.foreign_text import shown
+from heuncli.telling.change import Change
+from heuncli.telling.changes import EXTRA, MISSING, changes
 from heuncli.telling.kept import KeptRun
 
 CHANGED = 1
-SAMPLED = "extremes of results in JSON are those of their samples, and these lie at other instants"
+SAMPLED = "results in JSON hold samples: what lies between these is not compared"
+OTHER_SPEC = "the specs are not the same text"
+HOLDS_LESS = "{} was kept by an earlier version without means, so less is compared; heun check --update renews it"
 
 
 def main(request: DiffRequest) -> int:
@@ -23,6 +27,10 @@ def main(request: DiffRequest) -> int:
     require_other_file(request.output, [request.before, request.after])
     before, after = side_of(request.before), side_of(request.after)
     require_alike(before, after)
+    notes: list[str] = []
+    if before.kind == RESULT:
+        before, after, notes = at_common_instants(before, after)
+        notes.append(SAMPLED)
     before, said = solved(before, _even(after), request.time_limit_each)
     after, more = solved(after, _even(before), request.time_limit_each)
     for line in [] if request.quiet else dict.fromkeys([*said, *more]):
@@ -30,7 +38,8 @@ def main(request: DiffRequest) -> int:
     require_other_file(request.output, [request.before, request.after])  # the tables of specs, too
     found = [(case, change) for case, one, other in _pairs(before, after) for change in _changes(one, other)]
     compared = sum(len(run.numbers) + len(run.certain_sums) + len(run.open) for run in after.runs.values())
-    notes = [SAMPLED] if before.kind == RESULT and _even(before) != _even(after) else []
+    notes += [OTHER_SPEC] if not found and before.digest and after.digest and before.digest != after.digest else []
+    notes += [HOLDS_LESS.format(shown(side.path)) for side in (before, after) if not side.holds_courses]
     emit(FORMS[form](Difference(request.before, request.after, ordered(found), compared, notes)), request.output)
     return CHANGED if found and request.exit_code else 0
 

@@ -8,11 +8,12 @@ from typing import Any
 from heuncli.foreign_text import shown
 from heuncli.named_tuples import NamedTuple
 from heuncli.report.export import dump
+from heuncli.report.markdown_text import escape_line
 from heuncli.report.plurals import count
 from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
 from heuncli.report.workflow_lines import Annotation, lines
+from heuncli.telling.change import Change
 from heuncli.telling.change_words import difference_text, number_text
-from heuncli.telling.changes import Change
 
 HEADS = ("of", "at", "before", "after", "change", "allowed")
 MOST_ROWS = 200  # of a table; JSON holds all
@@ -42,8 +43,9 @@ def table(told: Difference) -> str:
 def in_markdown(told: Difference) -> str:
     """The same for a comment or a summary."""
     made = _table(told)
-    head = f"### heun diff: {summary(told)}\n\n`{shown(told.before)}` → `{shown(told.after)}`\n"
-    notes = "".join(f"\n{shown(note)}\n" for note in told.notes)
+    paths = escape_line(f"{told.before} → {told.after}")
+    head = f"### heun diff: {summary(told)}\n\n{paths}\n"
+    notes = "".join(f"\n{escape_line(note)}\n" for note in told.notes)
     return head + ("\n" + markdown(made) if made.rows else "") + notes
 
 

@@ -9,11 +9,13 @@ import numpy as np
 from heuncli.commands.lagrange.kinds import LENGTH, units_of
 from heuncli.commands.lagrange.page import number
 from heuncli.commands.lagrange.results import InertiaCourse
+from heuncli.report.labels import distinguish
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
 from heuncli.version import VERSION
 
+TOTAL = "k"
 COURSE = "OVER  ε and half its slope: C = ½ dε/dq q'²; k by cause at q' = {rate:.6g} {unit}, loads as at the start"
 
 
@@ -39,7 +41,8 @@ def table(found: InertiaCourse, shown_in: Units) -> TextTable:
         ("ε", own.inertia, found.epsilon, 0.0),
         ("½ dε/dq", own.slope, found.half, most / per),
     ]
-    named += [(name, own.force, k, found.reach) for name, k in {"k": found.total, **found.forces}.items()]
+    forces = [(TOTAL, found.total), *((distinguish(name, (TOTAL,)), k) for name, k in found.forces.items())]
+    named += [(name, own.force, k, found.reach) for name, k in forces]
     heads, cells = [], []
     for name, unit, values, scale in named:
         shown_unit, size = shown_in.of(unit)

@@ -11,6 +11,7 @@ import numpy as np
 from heuncli.commands.lagrange.kinds import ANGLE, LENGTH, units_of
 from heuncli.commands.lagrange.results import LagrangeResults, StateSpace
 from heuncli.commands.lagrange.section_forces import cuts
+from heuncli.report.labels import distinguish
 from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, head, labelled, plain
@@ -26,6 +27,7 @@ BLOWS = "BLOWS  ε [q'] = h + drives; r': what the piece beyond a cut does on th
 SECTIONS = "SECTIONS  s' along each coordinate: what the piece beyond the cut does on the rest"
 STATE_SPACE = "STATE SPACE  x' = A x + B u: A by the states, B by the inputs"
 OUTPUTS = "OUTPUTS  y = C x + D u"
+OWN_ROWS = ("k", "C")  # behind those of the causes
 SI = Units()
 SHOWN = 6  # coordinates, of which matrices are written out
 ROUNDING = 1e-13  # of what a number is summed from, or of the largest of a matrix: less is told as 0
@@ -159,8 +161,8 @@ def forces(found: LagrangeResults, units: Units) -> TextTable:
         told = zip(k, found.scale, shown, strict=True)
         return cause, *(number(x * by, size * by) for x, size, (_, by) in told)
 
-    rows = [row(cause, k) for cause, k in found.forces.items()]
-    rows += [row("k", found.total), row("C", found.coriolis)]
+    rows = [row(distinguish(cause, OWN_ROWS), k) for cause, k in found.forces.items()]
+    rows += [row(name, k) for name, k in zip(OWN_ROWS, (found.total, found.coriolis), strict=True)]
     heads = (TextColumn(head(name, unit)) for name, (unit, _) in zip(found.names, shown, strict=True))
     return TextTable(FORCES, (TextColumn("cause", "left"), *heads), tuple(rows))
 

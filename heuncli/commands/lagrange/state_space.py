@@ -5,7 +5,8 @@ The coordinates are those that no drive holds, and the driven ones whose acceler
 go and what they exert is put on as a constant load, so that the scene without them moves as the one with them; what is
 prescribed is then held, or moved, by a change dQ of that load:
     dq.. = a + n dQ,   a = A_q dq + A_u dq',   dq.._d = w:   dq.._f = a_f + n_fd n_dd^-1 (w - a_d)
-An input force is a change of its value: dq.. = n k, k of a value of 1.
+An input force is a change of its value: dq.. = n k, k of a value of 1. A rate v = row q' that is an output changes with
+dq, too, where something moves: rate_slopes.py.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from heuncli.commands.lagrange.equations import forces_by_cause, partials_of, re
 from heuncli.commands.lagrange.freed import FreedScene, freed
 from heuncli.commands.lagrange.instant import Instant
 from heuncli.commands.lagrange.kinds import units_of
+from heuncli.commands.lagrange.rate_slopes import RateSlopes, rate_slopes
 from heuncli.commands.lagrange.results import StateSpace
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
@@ -27,7 +29,7 @@ from heuncli.joint_kinds import JOINTS, RATES
 from heuncli.kinetostatics.actions import applied_loads
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.mechanism.model import JointLoad, Load, PointLoad, RopeLoad
+from heuncli.mechanism.model import JointLoad, Load, PairLoad, PointLoad
 from heuncli.nearest import did_you_mean
 from heuncli.records import record, replace
 from heuncli.results import Array
@@ -35,6 +37,7 @@ from heuncli.results import Array
 CODE = "no-state-space"
 UNIT = Expression.of(1.0)
 AXES = "xyz"
+NO_INPUTS = "this scene has no input: forces, couples, torques, actuators and drives are inputs; bushings are none"
 
 
 @record
@@ -180,6 +183,7 @@ def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
     """The inputs asked for; by default all loads that have one value. Raises SolveError for a name of neither."""
     forces = [load.name for load in at.freed.layout.mechanism.loads if has_value(load)]
     drives = {drive_name(at, name): name for name, is_driven in zip(by.names, by.driven, strict=True) if is_driven}
+    drives = {f"drives.{name}" if name in forces else name: coordinate for name, coordinate in drives.items()}
     if not asked:
         loads = at.freed.layout.mechanism.loads
         plain = [own.name for own in loads if not isinstance(own, PointLoad) or direction(own) is not None]
@@ -190,7 +194,7 @@ def inputs_of(at: Instant, by: Chosen, asked: Sequence[str]) -> Inputs:
         raise SolveError(*(
             Problem(
                 CODE, f"--inputs {name}: no force with a value and no drive is called so",
-                hint=did_you_mean(name, known, "inputs") or "forces, couples, torques and actuators have values",
+                hint=did_you_mean(name, known, "inputs") if known else NO_INPUTS,
             )
             for name in wrong
         ))  # fmt: skip
@@ -205,10 +209,13 @@ def drive_name(at: Instant, coordinate: str) -> str:
 
 
 def has_value(load: Load) -> bool:
-    """Whether a load is told by values."""
-    return bool(load.values) and not (
-        isinstance(load, RopeLoad) or (isinstance(load, PointLoad) and load.spread is not None)
-    )
+    """Whether a load has one value, a force or torque, of which an input is a change.
+
+    Springs and dampers by numbers, bushings, ropes, threads and distributed loads have none.
+    """
+    if isinstance(load, PointLoad):
+        return load.spread is None
+    return isinstance(load, PairLoad | JointLoad) and load.value is not None
 
 
 def direction(load: PointLoad) -> Array | None:
@@ -252,6 +259,18 @@ def of_one(load: Load) -> Load:
 Matrices = tuple[Array, Array]
 
 
+@record
+class Output:
+    """An output by its rows on the coordinates (f,): of a place, `by_place`; of a rate, `by_rate` and what a
+    displacement makes of it at fixed rates, `by_place`; of an acceleration of a coordinate, `by_acceleration`.
+    """
+
+    by_place: Array
+    by_rate: Array
+    by_acceleration: Array
+    unit: str
+
+
 def outputs_of(
     scene: FreedScene, at: Instant, own: Chosen, found: Linearised, free: Sequence[int], of: Matrices,
     asked: Sequence[str],
@@ -260,43 +279,40 @@ def outputs_of(
     A, B = of
     n = len(free)
     names = tuple(asked) or tuple(own.names[i] for i in free)
-    rows, through, units = [], [], []
+    slopes = rate_slopes(scene.layout, at.t, at.holding, found, own.S, drift_of(found, own))
     all_rows = candidates(scene.layout, found)
-    for name in names:
-        kind, row, unit = output(scene, at, own, found, all_rows, name)
-        row = row[free]
-        rows.append(
-            {"place": np.concatenate([row, np.zeros(n)]), "rate": np.concatenate([np.zeros(n), row])}.get(
-                kind, row @ A[n:]
-            )
-        )
-        through.append(row @ B[n:] if kind == "acceleration" else np.zeros(B.shape[1]))
-        units.append(unit)
-    return np.array(rows).reshape(len(names), 2 * n), np.array(through).reshape(len(names), B.shape[1]), names, units
+    told = [output(slopes, at, own, all_rows, name) for name in names]
+    C = [np.concatenate([o.by_place[free], o.by_rate[free]]) + o.by_acceleration[free] @ A[n:] for o in told]
+    D = [o.by_acceleration[free] @ B[n:] for o in told]
+    shape = len(names), B.shape[1]
+    return np.array(C).reshape(len(names), 2 * n), np.array(D).reshape(shape), names, [o.unit for o in told]
 
 
-def output(
-    scene: FreedScene, at: Instant, own: Chosen, found: Linearised, rows: dict[str, Array], name: str
-) -> tuple[str, Array, str]:
-    """Of an output whether it is a place, a rate or an acceleration; its row on the coordinates (f,); its unit."""
+def output(slopes: RateSlopes, at: Instant, own: Chosen, rows: dict[str, Array], name: str) -> Output:
+    """An output by its name. Raises SolveError where nothing is called so."""
     owner, _, quantity = name.rpartition(".")
     base = {rate: place for place, rate in RATES.items()}
+    none = np.zeros(len(own.names))
     if name in rows:
-        return "place", rows[name] @ own.S, units_of(name).value
+        return Output(rows[name] @ own.S, none, none, units_of(name).value)
+    mechanism = slopes.layout.mechanism
     moved = f"{owner}.{base.get(quantity, quantity)}"
     if moved in rows:
-        return "rate", rows[moved] @ own.S, units_of(moved).rate
+        joint = next(joint for joint in mechanism.joints if joint.name == owner)
+        by_place = none if moved in own.names else slopes.of_joint(joint, base[quantity])
+        return Output(by_place, rows[moved] @ own.S, none, units_of(moved).rate)
     if quantity == "acceleration":
         place = next((f"{owner}.{q}" for q in ("angle", "travel") if f"{owner}.{q}" in rows), None)
         if place in own.names:
-            return "acceleration", rows[place] @ own.S, units_of(place).acceleration
-    mechanism = scene.layout.mechanism
+            return Output(none, none, rows[place] @ own.S, units_of(place).acceleration)
     axis = AXES.find(quantity[-1:])
     for i, body in enumerate(mechanism.bodies):
         point = owner.removeprefix(f"{body.name}.")
         if owner.startswith(f"{body.name}.") and point in body.points and axis >= 0 and quantity[:-1] in ("", "v"):
-            states = body_states(at.freed.layout, at.here)
-            X = partials_of(scene.layout, found, own.S).at(i, states.point_position(i, body.points[point])[0])
-            return ("rate", X[axis], "m/s") if quantity[:-1] else ("place", X[axis], "m")
+            position = body_states(at.freed.layout, at.here).point_position(i, body.points[point])[0]
+            X = partials_of(slopes.layout, slopes.found, own.S).at(i, position)[axis]
+            if not quantity[:-1]:
+                return Output(X, none, none, "m")
+            return Output(slopes.of_point(i, position)[axis], X, none, "m/s")
     hint = did_you_mean(name, list(rows), "outputs") or "coordinates, their rates, BODY.POINT.x or .vx"
     raise SolveError(Problem(CODE, f"--outputs {name}: no coordinate and no point is called so", hint=hint))

@@ -124,7 +124,7 @@ def _run(name: str, title: str, study: Study, shown: Units) -> ReportedRun:
     if study.results.impulses:
         page = page._replace(struck=study.struck_along([load.name for load in RESULTANTS]))
     wanted = wanted_of(study.spec)
-    kept, searched = keep(study, wanted), looks_between(study, wanted)
+    kept, searched = keep(study, wanted, whole_course=False), looks_between(study, wanted)
     return ReportedRun(name, title, study, kept, page, searched)
 
 

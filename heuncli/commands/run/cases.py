@@ -17,12 +17,13 @@ from heuncli.report.page_width import fit
 from heuncli.report.table_units import Units
 from heuncli.report.text_table import WIDTH, TextColumn, TextTable, markdown, plain
 from heuncli.spec.models import Spec
-from heuncli.telling.envelopes import Enveloped, envelope
+from heuncli.telling.envelopes import Bound, Enveloped, envelope
 from heuncli.telling.keep import keep
 from heuncli.telling.kept import KeptRun
 
 HEADS = ("of", "unit", "least", "at [s]", "case", "greatest", "at [s]", "case")
 DIGITS = 6
+ALL_ALIKE = "all alike"  # where cases differ by no more than their errors
 STRUCK = "without blows: these stand in the tables of each case"
 
 
@@ -36,7 +37,7 @@ def run_all(task: RunTask, spec: Spec, cases: Mapping[str, Spec]) -> int:
         study, pieces = solved(task, one)
         told[name] = "".join(pieces)
         if not (task.asked or task.counted):
-            runs[name] = keep(study, task.what.reports)
+            runs[name] = keep(study, task.what.reports, whole_course=False)
         codes.append(leave(task, one, study, f"heun: case {name}"))
     emit(_text(task, cases, told, runs), task.request.output)
     say_what_stays(task.request.units, "--measure" if task.asked else task.form, task.request.quiet)
@@ -74,19 +75,38 @@ def _blocks(runs: Mapping[str, KeptRun]) -> Iterator[tuple[str, dict[str, Any]]]
     beyond = {name: run.horizon for name, run in runs.items() if run.horizon is not None}
     for row in envelope(runs):
         block: dict[str, Any] = {"unit": row.unit}
-        block |= {"min": row.least._asdict() if row.least else None}
-        block |= {"max": row.greatest._asdict() if row.greatest else None}
+        block |= {"min": _bound_block(row.least), "max": _bound_block(row.greatest)}
         block |= {"not_in": dict(row.unclear)} if row.unclear else {}
         yield row.path, block | ({"horizon": beyond} if beyond else {})
 
 
+def _bound_block(bound: Bound | None) -> dict[str, Any] | None:
+    """A bound for JSON; alike: of which other cases it is as well, but for the stated errors."""
+    if bound is None:
+        return None
+    block = {"value": bound.value, "at": bound.at, "case": bound.case}
+    return block | ({"alike": list(bound.alike)} if bound.alike else {})
+
+
 def _table(rows: Sequence[Enveloped], units: Units, notes: Sequence[str]) -> TextTable:
     """The envelope as a table; what is 0 in all cases is left out."""
-    told = [row for row in rows if row.unclear or any(bound and bound.value for bound in (row.least, row.greatest))]
+    told = [row for row in rows if row.unclear or not all(map(_is_zero, (row.least, row.greatest)))]
     columns = tuple(TextColumn(head, "left" if head in ("of", "unit", "case") else "point") for head in HEADS)
     unclear = [f"{row.path}: {row.lacks}" for row in told if row.unclear]
     body = tuple(_row(row, units) for row in told if row.least or row.greatest)
     return TextTable("ENVELOPE  of all load cases", columns, body, notes=(*notes, *map(shown, unclear)))
+
+
+def _is_zero(bound: Bound | None) -> bool:
+    """Whether there is no bound, or nothing but rounding in all cases."""
+    return bound is None or not bound.value or bound.is_rounding
+
+
+def _governing(bound: Bound) -> str:
+    """The case that governs a bound; nothing where that is rounding, or where all cases are alike."""
+    if bound.is_rounding or bound.case is None:
+        return "" if bound.is_rounding else ALL_ALIKE
+    return ", ".join(bound.governing) if len(bound.alike) <= 1 else f"{bound.case} and {len(bound.alike)} alike"
 
 
 def _row(row: Enveloped, units: Units) -> tuple[str, ...]:
@@ -96,8 +116,9 @@ def _row(row: Enveloped, units: Units) -> tuple[str, ...]:
         if bound is None:
             ends += ["", "", ""]
             continue
-        at = "" if bound.at is None else f"{bound.at:.6g}"
-        ends += [f"{bound.value * size:.{DIGITS}g}", at, shown(bound.case)]
+        at = "" if bound.at is None or bound.is_rounding else f"{bound.at:.6g}"
+        text = "0" if bound.is_rounding else f"{bound.value * size:.{DIGITS}g}"
+        ends += [text, at, shown(_governing(bound))]
     return (shown(row.path), unit, *ends)
 
 

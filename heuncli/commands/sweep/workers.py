@@ -10,7 +10,6 @@ by one, and the one that ends a second process has that for its answer. Impure: 
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import islice
@@ -49,7 +48,7 @@ def answers_of(
         return
     for batch, found_ in jobs.as_done(work, batches.next, jobs_, stopped):
         if isinstance(found_, jobs.Died):
-            yield from ((number, died(found_)) for number in batches.again(batch))
+            yield from ((number, died(found_)) for number in batches.again.lost(batch, found_))
         else:
             batches.took(batch, found_.seconds)
             yield from zip(batch, found_.answers, strict=True)
@@ -73,7 +72,9 @@ def answer_of(asker: Asker, values: Mapping[str, str]) -> Answer:
 
 
 def died(how: jobs.Died) -> Answer:
-    """The answer of a variant that ended two processes."""
+    """The answer of a variant that ended two processes, or one at the hard end of its time limit."""
+    if how.is_time_up:
+        return Answer(code="time-limit", reason="the time limit was reached, and the work did not stop")
     return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how.how}, twice")
 
 
@@ -83,25 +84,17 @@ class Batches:
     def __init__(self, numbers: Iterator[int]) -> None:
         self.numbers = numbers
         self.size = 1
-        self.alone: deque[int] = deque()  # of a batch whose process died
-        self.tried: set[int] = set()
+        self.again = jobs.SecondTries()  # of batches whose process died
 
     def next(self) -> tuple[int, ...] | None:
         """The next batch; None where there is none for now."""
-        if self.alone:
-            return (self.alone.popleft(),)
+        alone = self.again.next()
+        if alone is not None:
+            return (alone,)
         return tuple(islice(self.numbers, self.size)) or None
 
     def took(self, batch: Sequence[int], seconds: float) -> None:
         """A batch is answered: the next ones are as large as its pace makes fit."""
-        self.tried.difference_update(batch)
+        self.again.answered(batch)
         fitting = BATCH * len(batch) / max(seconds, 1e-6)
         self.size = int(min(max(fitting, 1.0), GROWTH * len(batch), MOST))
-
-    def again(self, batch: Sequence[int]) -> list[int]:
-        """The process of a batch has died: its variants are tried once more, one by one. Returns those that were."""
-        twice = [number for number in batch if number in self.tried]
-        self.tried.update(batch)
-        self.tried.difference_update(twice)
-        self.alone.extend(number for number in batch if number not in twice)
-        return twice

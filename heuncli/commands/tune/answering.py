@@ -57,7 +57,10 @@ def answer(asker: Asker, values: Mapping[str, str]) -> Answer:
     left = alarm.remaining()
     if left is not None and left <= ALMOST:
         return Answer(code=TIME_LIMIT)
-    return asker.answer(values)
+    try:
+        return alarm.interruptible(partial(asker.answer, values))
+    except alarm.TimeUp:  # the search calls this through SciPy, which no exception passes unharmed
+        return Answer(code=TIME_LIMIT)
 
 
 def answer_apart(asker: Asker, values: Mapping[str, str]) -> Answer:
@@ -69,9 +72,11 @@ def answer_apart(asker: Asker, values: Mapping[str, str]) -> Answer:
         return failed(error)
 
 
-def died(values: Mapping[str, str], how: str) -> Answer:
+def died(values: Mapping[str, str], how: jobs.Died) -> Answer:
     """What stands for a variant whose process died."""
-    return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how}")
+    if how.is_time_up:
+        return Answer(code=TIME_LIMIT)
+    return Answer(code=WORKER_DIED, reason=f"the process that solved it was {how.how}, twice")
 
 
 def outcome_of(found: Answer) -> TrialOutcome:

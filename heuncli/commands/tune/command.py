@@ -86,8 +86,9 @@ def searched(request: TuneRequest, asked: AskedTuning, asker: Asker) -> Tuning:
         try:
             tuning.run()
         except alarm.TimeUp:
-            alarm.disarm(late=True)
             trials.time_is_up = True
+        if trials.time_is_up:  # what was found is told, however long that takes
+            alarm.disarm(late=True)
     if trials.time_is_up and trials.best() is None:
         message = "the time limit was reached before any variant was solved"
         raise LimitError(Problem("time-limit", message, hint="a longer --time-limit"))

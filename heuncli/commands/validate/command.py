@@ -21,7 +21,7 @@ def main(request: ValidateRequest) -> int:
     codes, lines = [0], []
     for path in request.specs:
         try:
-            work = partial(alarm.limited, partial(_judged, path), request.time_limit_each)
+            work = partial(alarm.limited, partial(_judged, path), request.time_limit_each, subject=path)
             spec, warnings = contained(work, ("validate", path))
         except HeunError as error:
             report_problems(error.problems, "" if isinstance(error, SpecError) else f"{path}: ")

@@ -19,7 +19,7 @@ TURNS, SLIDES = ("revolute", "continuous"), ("prismatic",)
 X_AXIS: Vec = (1.0, 0.0, 0.0)
 MOMENTS = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 # of a robot, a link, a joint: what says nothing of its mechanics
-SILENT = frozenset({"material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller"})
+SILENT = ("material", "gazebo", "transmission", "sensor", "plugin", "ros2_control", "safety_controller")
 LINK_PARTS = ("inertial", "visual", "collision")
 INERTIAL_PARTS = ("origin", "mass", "inertia")
 JOINT_PARTS = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic", "calibration")

@@ -13,8 +13,14 @@ import numpy as np
 
 from heuncli.expressions.discontinuities import jumps
 from heuncli.expressions.programs import Expression
+from heuncli.integration.contacts.shared_impulses import (
+    SharedImpulse,
+    find_shared_impulses,
+    held_contacts,
+    loaded,
+)
 from heuncli.integration.evaluator import Evaluator, Recovered
-from heuncli.integration.segments import just_after, just_before
+from heuncli.integration.segments import just_before
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.response import Blows as Answered
@@ -40,6 +46,15 @@ class GivenBlow:
     blows: tuple[int, ...]
     drives: dict[int, tuple[float, float]]
 
+    def is_due(self, t: float) -> bool:
+        """Whether a run that goes on from an instant t [s] has it behind itself."""
+        return self.before < t or self.after <= t
+
+    def with_other(self, other: GivenBlow) -> GivenBlow:
+        """Both together; `other` begins with it, or later."""
+        drives = {**self.drives, **other.drives}
+        return GivenBlow(self.before, max(self.after, other.after), (*self.blows, *other.blows), drives)
+
     def names(self, mechanism: Mechanism) -> tuple[str, ...]:
         """The names of what acts."""
         laws = {law.owner: law.name for law in mechanism.laws}
@@ -62,7 +77,8 @@ class Jump:
 
     recovered: the kernel's answers at the state before it, with `causes` the columns of jumps, (1, n_c); causes: their
     names; impulses: the given ones; after: the state behind, settled; kinetic: energy before and behind [J]; work: of
-    all impulses [J]; holding (contacts,): which are closed behind it.
+    all impulses [J]; holding (contacts,): which are closed behind it; shared: contacts of which a model says how they
+    share it.
     """
 
     time: float
@@ -74,29 +90,35 @@ class Jump:
     kinetic: tuple[float, float]
     work: float
     holding: Array = np.zeros(0)
+    shared: tuple[SharedImpulse, ...] = ()
 
 
 def rate_jumps(value: Expression, last: float) -> list[tuple[float, float, float, float]]:
     """Where within (0, last] the rate of a drive jumps: the instants before and behind, and the rates there."""
-    return jumps(value, just_after(last), order=1) if value.time_dependent else []
+    return jumps(value, last, order=1) if value.time_dependent else []
 
 
 def schedule(mechanism: Mechanism, last: float) -> list[GivenBlow]:
-    """The blows that are given at instants within [0, last], ascending; those of one instant together."""
-    at: dict[float, tuple[list[int], dict[int, tuple[float, float]]]] = {}
-    befores: dict[float, float] = {}
-    for law in mechanism.laws:
-        for before, after, first, then in rate_jumps(law.value, last):
-            befores[after] = before
-            at.setdefault(after, ([], {}))[1][law.owner] = (first, then)
-    for i, blow in enumerate(mechanism.blows):
-        if blow.when is not None:
-            continue  # struck where that becomes true (run/triggers.py)
-        with_drive = next((t for t, before in befores.items() if before < blow.time <= t), blow.time)
-        at.setdefault(with_drive, ([], {}))[0].append(i)
-    return [
-        GivenBlow(befores.get(t, just_before(t) if t > 0.0 else 0.0), t, tuple(at[t][0]), at[t][1]) for t in sorted(at)
+    """The blows that are given at instants within [0, last], ascending; those of one instant together.
+
+    One instant is also what rounding does not tell apart: where one begins before the other has ended.
+    """
+    given = [
+        GivenBlow(before, after, (), {law.owner: (first, then)})
+        for law in mechanism.laws
+        for before, after, first, then in rate_jumps(law.value, last)
     ]
+    for i, blow in enumerate(mechanism.blows):
+        if blow.when is None:  # else it is struck where that becomes true (run/triggers.py)
+            before = just_before(blow.time) if blow.time > 0.0 else 0.0
+            given.append(GivenBlow(before, blow.time, (i,), {}))
+    found: list[GivenBlow] = []
+    for one in sorted(given, key=lambda one: one.before):
+        if (found and one.before < found[-1].after) or (found and one.after == found[-1].after):
+            found[-1] = found[-1].with_other(one)
+        else:
+            found.append(one)
+    return found
 
 
 @record
@@ -137,7 +159,10 @@ def strike(evaluator: Evaluator, given: GivenBlow, state: Array, time: float) ->
         evaluator.workspace, given.before, sides.still.states[0], np.array(sides.loads), np.array(sides.jumps)
     )
     after, work = state_behind(evaluator.layout, given, sides, found.columns)
-    return jump_of(evaluator, given, sides, BlowResult(time, found, sides.causes, after, work, np.zeros(0)))
+    own = loaded(held_contacts(evaluator.layout), found.columns.multipliers)
+    shared = find_shared_impulses(own, np.zeros((len(own), len(own)), dtype=bool), found.columns.multipliers)
+    blow = BlowResult(time, found, sides.causes, after, work, np.zeros(0), shared=tuple(shared))
+    return jump_of(evaluator, given, sides, blow)
 
 
 def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: Columns) -> tuple[Array, float]:
@@ -151,7 +176,7 @@ def state_behind(layout: Layout, given: GivenBlow, sides: RightSides, columns: C
 class BlowResult:
     """What a blow came to: its columns by cause, the state behind it, the work of all, the contacts closed there.
 
-    struck: the contacts that take part in it, also those that share what others bear.
+    struck: the contacts that take part in it, also those that share what others bear; shared: see Jump.
     """
 
     time: float
@@ -161,6 +186,7 @@ class BlowResult:
     work: float
     holding: Array
     struck: tuple[str, ...] = ()
+    shared: tuple[SharedImpulse, ...] = ()
 
 
 def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: BlowResult) -> Jump:
@@ -176,7 +202,8 @@ def jump_of(evaluator: Evaluator, given: GivenBlow, sides: RightSides, blow: Blo
     kinetic = kinetic_energy(layout, still.bodies[0]), kinetic_energy(layout, then.bodies[0])
     names = tuple(dict.fromkeys((*given.names(layout.mechanism), *blow.struck)))
     return Jump(
-        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding
+        blow.time, names, still, blow.causes, sides.impulses, then.states[0], kinetic, blow.work, blow.holding,
+        blow.shared,
     )  # fmt: skip
 
 

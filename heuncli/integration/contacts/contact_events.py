@@ -22,13 +22,23 @@ from heuncli.integration.contacts.blows import (
 )
 from heuncli.integration.contacts.latches import UNWATCHED, Bolts, Catch, Latches, with_catches, work_of_catches
 from heuncli.integration.contacts.resting import rests, short_flights, undecided_by_friction
-from heuncli.integration.contacts.restitution import Struck, strikes, undecided
+from heuncli.integration.contacts.restitution import Struck, feeling, strikes, undecided
+from heuncli.integration.contacts.sequential_impacts import EndlessImpacts, endless_impacts, independent
+from heuncli.integration.contacts.shared_impulses import (
+    LoadedContact,
+    SharedImpulse,
+    find_shared_impulses,
+    held_contacts,
+    listed,
+    loaded,
+)
 from heuncli.integration.contacts.touching import Touching, answerable, answers, touching
 from heuncli.integration.evaluator import Evaluator, Recovered
 from heuncli.records import record, replace
 from heuncli.response import Blows as Answered
 from heuncli.response import Columns, blows
-from heuncli.results import Array, Mask
+from heuncli.results import Array, Indices, Mask
+from heuncli.spec.models import SIMULTANEOUS
 from heuncli.tree.layout import Layout
 from heuncli.tree.tables import Table
 
@@ -118,11 +128,17 @@ def require_caught(evaluator: Evaluator, sides: RightSides, found: Answered, cat
 
 @record
 class Unrefined:
-    """Impulses as the complementarity problem gives them, and the columns of unit impulses."""
+    """Impulses as the contacts' problem gives them, and the columns of unit impulses.
+
+    basis: the contacts that bear and are solved for by their rates; others: those of a sequence whose impulses stay, for
+    their rates follow from those of the basis.
+    """
 
     touch: Touching
     struck: Struck
     units: Columns
+    basis: Indices
+    others: Indices
 
 
 class Contacts:
@@ -169,7 +185,8 @@ class Contacts:
         self.holding = latches.holding()
         self.holding[touch.which] = outcome.holding
         self.holding[unwatched] = UNWATCHED
-        self.tell(time, touch, outcome)
+        shared = self.shared(pressed, outcome, catches)
+        self.tell(time, touch, outcome, shared)
         self.tell_latches(time, released, catches)
         bears, n = np.flatnonzero(outcome.struck.impulses), len(sides.loads)
         if not len(bears) and not n:
@@ -177,10 +194,10 @@ class Contacts:
         causes = (*sides.causes, *(self.layout.contacts[i].name for i in touch.which[bears]))
         shown = np.array([*range(n), *(n + bears)], dtype=int)
         found = Answered(outcome.columns.at(shown), found.unmet[shown], found.idle)
-        sides = replace(sides, still=self.shown(sides.still, touch, outcome.struck))
+        sides = replace(sides, still=self.shown(sides.still, pressed, outcome.struck))
         struck = tuple(self.layout.contacts[i].name for i in touch.which[outcome.struck.closed])
         struck += tuple(self.layout.contacts[catch.contact].name for catch in catches if catch.rate != 0.0)
-        blow = BlowResult(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck)
+        blow = BlowResult(time, found, causes, outcome.after, outcome.work, self.holding.copy(), struck, shared)
         jump = jump_of(self.evaluator, given, sides, blow)
         terms = 0.5 * float(outcome.struck.impulses**2 @ np.diag(pressed.A)) + met_freely(self.layout, sides.impulses)
         require_energy(jump, terms)
@@ -204,7 +221,7 @@ class Contacts:
         touch, open_ = pressed.touch, self.latches.holding()
         at_rest = np.zeros(len(touch.which), dtype=bool)
         while True:
-            struck = strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest)
+            struck = self.strike(given.after, pressed, at_rest)
             columns = self.scaled(units, touch, struck.impulses)
             after, work = state_behind(self.layout, given, sides, columns)
             then = self.evaluator.recovered(np.array([given.after]), after[None, :], holding=open_)
@@ -217,12 +234,48 @@ class Contacts:
         if self.layout.mechanism.rubbing:
             self.require_decided(given.after, after, pressed, holding, struck.rate)
         if struck.impulses.any():
-            struck, columns, whole = self.refined(given, sides, Unrefined(touch, struck, units))
+            bears = np.flatnonzero(struck.impulses)
+            own = np.arange(len(bears))
+            if self.layout.mechanism.impacts != SIMULTANEOUS:
+                own = independent(pressed.A[np.ix_(bears, bears)])
+            unrefined = Unrefined(touch, struck, units, bears[own], np.delete(bears, own))
+            struck, columns, whole = self.refined(given, sides, unrefined)
             after, work = state_behind(self.layout, given, sides, whole)
         work += float(struck.impulses @ (0.5 * (touch.rate + struck.rate)))
         work += work_of_catches(self.layout, catches, columns.multipliers)
         self.bring_to_rest(sides.still.states[0], after)
         return ContactOutcome(struck, holding, at_rest, columns, after, work)
+
+    def strike(self, t: float, pressed: Pressed, at_rest: Mask) -> Struck:
+        """The impulses of the contacts; at_rest: those that stay. Raises SolveError for impacts without an end."""
+        touch = pressed.touch
+        try:
+            return strikes(touch, pressed.A, pressed.moves, pressed.rates, at_rest, self.layout.mechanism.impacts)
+        except EndlessImpacts as endless:
+            own = [self.layout.contacts[i].name for i in touch.which.tolist()]
+            raise endless_impacts(t, [own[k] for k in endless.own.tolist()], own[endless.most]) from None
+
+    def shared(self, pressed: Pressed, outcome: ContactOutcome, catches: list[Catch]) -> tuple[SharedImpulse, ...]:
+        """The contacts of which a model says how they share the blow: those that bear, latches that catch, others."""
+        struck, which = outcome.struck, pressed.touch.which
+        own, n = np.flatnonzero(struck.closed), len(outcome.columns.multipliers) - len(which)
+        contacts = [
+            LoadedContact(
+                contact.name, contact.row, n + int(k), impacts=int(struck.count[k]), settled=bool(struck.settled[k])
+            )
+            for k, contact in ((k, self.layout.contacts[which[k]]) for k in own)
+        ]
+        caught = [self.layout.contacts[catch.contact] for catch in catches if catch.rate != 0.0]
+        first = n - len(caught)
+        contacts += [
+            LoadedContact(contact.name, contact.row, first + k, is_held=True) for k, contact in enumerate(caught)
+        ]
+        contacts += loaded(held_contacts(self.layout), outcome.columns.multipliers)
+        felt = np.zeros((len(contacts), len(contacts)), dtype=bool)
+        for group in feeling(pressed.A):  # also over contacts that bear nothing, which is a matter of the model, too
+            members = np.isin(own, group)
+            felt[: len(own), : len(own)] |= members[:, None] & members
+        return tuple(find_shared_impulses(contacts, felt, outcome.columns.multipliers))
 
     def require_decided(self, t: float, after: Array, pressed: Pressed, holding: Array, rate: Array) -> None:
         """Raise SolveError where friction by what joints carry makes other contacts bear than those that are held."""
@@ -245,10 +298,11 @@ class Contacts:
         the columns of the contacts lack of it goes to the last of them.
         """
         touch, struck, n = found.touch, found.struck, len(sides.loads)
-        own = np.flatnonzero(struck.impulses)
+        own, others = found.basis, found.others
         contacts = [self.layout.contacts[i] for i in touch.which[own].tolist()]
         rows, sense = [c.row for c in contacts], np.array([c.sense for c in contacts])
         load = np.sum([np.zeros((len(self.layout.place), 6)), *sides.loads], axis=0)
+        load = load + np.einsum("k,kbi->bi", struck.impulses[others], touch.loads[others])
         jump = np.sum([np.zeros(len(self.layout.freedoms) + len(self.layout.rows)), *sides.jumps], axis=0)
         jump[len(self.layout.freedoms) + np.array(rows)] -= sense * (struck.rate - touch.rate)[own]
         holding = self.latches.holding()
@@ -258,6 +312,9 @@ class Contacts:
         impulses = struck.impulses.copy()
         impulses[own] = -sense * whole.multipliers[0, rows]
         columns = self.scaled(found.units, touch, impulses)
+        for k in others.tolist():  # which the one column has as given loads
+            contact = self.layout.contacts[touch.which[k]]
+            whole.multipliers[0, contact.row] -= contact.sense * impulses[k]
         total, last = columns.sum(), n + int(own[-1])
         for part in ("bodies", "freedoms"):
             table, right, summed = (getattr(x, part) for x in (columns, whole, total))
@@ -292,10 +349,18 @@ class Contacts:
             multipliers[n + k, contact.row] -= contact.sense * impulses[k]
         return Columns(by(units.bodies), by(units.freedoms), multipliers)
 
-    def shown(self, still: Recovered, touch: Touching, struck: Struck) -> Recovered:
-        """The answers before the blow, with the contacts that take part in it: what they leave open is then seen."""
-        rows, closed = still.rows.copy(), self.latches.holding()
-        closed[touch.which] = struck.closed
+    def shown(self, still: Recovered, pressed: Pressed, struck: Struck) -> Recovered:
+        """The answers before the blow, with the contacts that take part in it: what they leave open is then seen.
+
+        A sequence determines the impulses of contacts that others could replace; these leave nothing open.
+        """
+        touch, rows, closed = pressed.touch, still.rows.copy(), self.latches.holding()
+        own = struck.closed
+        if self.layout.mechanism.impacts != SIMULTANEOUS:
+            bears = np.flatnonzero(struck.impulses)
+            own = struck.depends.copy()
+            own[bears[independent(pressed.A[np.ix_(bears, bears)])]] = True
+        closed[touch.which] = own
         if np.array_equal(self.layout.closed(closed), still.holding[0]):
             return still
         chosen = self.evaluator.recovered(still.times, still.states, holding=closed).rows
@@ -303,22 +368,18 @@ class Contacts:
             rows[name] = chosen[name]
         return replace(still, rows=rows)
 
-    def tell(self, t: float, touch: Touching, outcome: ContactOutcome) -> None:
+    def tell(
+        self, t: float, touch: Touching, outcome: ContactOutcome, shared: tuple[SharedImpulse, ...]
+    ) -> None:
         """Put down what is worth a sentence."""
         own = [self.layout.contacts[i] for i in touch.which.tolist()]
         struck = [own[k] for k in np.flatnonzero(outcome.struck.closed & (touch.rate < 0.0))]
         for contact in struck:
             self.strikes[contact.name] = self.strikes.get(contact.name, 0) + 1
         at = f"at t = {t:.6g} s"
-        if len(struck) > 1:
-            names = [contact.name for contact in struck]
-            together = f"{', '.join(names[:-1])} and {names[-1]}"
-            self.notes[f"{at} {together} are struck at once: Newton's restitution is taken for each"] = None
-        alike = [own[k] for k in np.flatnonzero(outcome.struck.equal & (touch.rate < 0.0))]
-        if len(alike) > 1:
-            least = min(contact.restitution for contact in alike)
-            told = ", ".join(contact.name for contact in alike)
-            self.notes[f"{at} {told} take the restitution {least:g}: each with its own would add energy"] = None
+        if len(struck) > 1 and not shared:
+            names = listed([contact.name for contact in struck])
+            self.notes[f"{at} {names} are struck at once, and do not load each other"] = None
         for k in np.flatnonzero(outcome.at_rest):
             name = own[k].name
             count = self.strikes.get(name, 0)

@@ -3,7 +3,8 @@
     w = q + A z,   z >= 0,   w >= 0,   z . w = 0,      A = W M^-1 W'  (through all that holds both ways)
 W are the contacts' unit loads, positive where they bear. Of impulses z, w are the rates of opening behind the blow and
 those that Newton's restitution asks for: w = v+ + e v- of what is struck (v- < 0), v+ of what rests. A contact bears or
-opens, never both (Moreau 1988; Pfeiffer and Glocker 1996).
+opens, never both (Moreau 1988; Pfeiffer and Glocker 1996). Several that touch are struck at the same time, or one after
+another (sequential_impacts.py): rigid bodies alone do not say which.
 """
 
 from __future__ import annotations
@@ -13,9 +14,11 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.complementarity import Pivots, complementary
+from heuncli.integration.contacts.sequential_impacts import EndlessImpacts, feels, strike_in_sequence
 from heuncli.integration.contacts.touching import Touching, spread
 from heuncli.records import fields, record
 from heuncli.results import Array, Indices, Mask
+from heuncli.spec.models import SIMULTANEOUS, ImpactModel
 
 MOST_ROUNDS = 60  # strikes that follow each other at one instant, before what is left of them is plastic
 
@@ -24,14 +27,15 @@ MOST_ROUNDS = 60  # strikes that follow each other at one instant, before what i
 class Struck:
     """Impulses of touching contacts (k,), the rates of opening behind them, and what is worth telling.
 
-    depends (k,): those that others hold, so that how they share is not known; equal (k,): those that took the least
-    restitution of all that feel each other.
+    depends (k,): those that others hold, so that how they share is not known; count (k,): how often each was struck;
+    settled (k,): those that rebound, and yet rest behind endlessly many impacts in a sequence.
     """
 
     impulses: Array
     rate: Array
     depends: Mask
-    equal: Mask
+    count: Indices
+    settled: Mask
 
     @property
     def closed(self) -> Mask:
@@ -39,18 +43,27 @@ class Struck:
         return np.asarray((self.impulses != 0.0) | self.depends)
 
 
-def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
+def strikes(
+    touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask, impacts: ImpactModel = SIMULTANEOUS
+) -> Struck:
     """The impulses of contacts that are struck, or pressed by given blows (pressed: rates these add).
 
     What moves apart at the instant takes part only if it is struck in a later round. plastic: contacts that rest behind
-    the blow, whatever their restitution, and though they would open by less than is seen. Contacts that do not feel
-    each other are struck as if each were alone: what one machine loses does not hide what another would gain.
+    the blow, whatever their restitution, and though they would open by less than is seen. impacts: whether what touches
+    is struck at the same time or in a sequence. Contacts that do not feel each other are struck as if each were alone.
+
+    Neither adds energy: the work of an impulse is z (v- + v+) / 2, and what bears has v+ = -e v-, v- <= 0, e <= 1.
+    Raises EndlessImpacts.
     """
     k = len(touch.which)
     none = np.zeros(k, dtype=bool)
-    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), none.copy())
+    found = Struck(np.zeros(k), touch.rate.copy(), none.copy(), np.zeros(k, dtype=int), none.copy())
+    strike = struck_together if impacts == SIMULTANEOUS else struck_in_sequence
     for own in feeling(A):
-        part = struck_together(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
+        try:
+            part = strike(touch.some(own), A[np.ix_(own, own)], moves[own], pressed[own], plastic[own])
+        except EndlessImpacts as endless:
+            raise EndlessImpacts(own[endless.own], int(own[endless.most])) from None
         for name, values in fields(part).items():
             getattr(found, name)[own] = values
     return found
@@ -58,8 +71,7 @@ def strikes(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mas
 
 def feeling(A: Array) -> list[Indices]:
     """The groups of contacts that feel each other, by what one that bears does to the other, in their order."""
-    size = np.sqrt(np.maximum(np.diag(A), 0.0))
-    felt = np.abs(A) > tolerances.SUM_ROUNDING * size[:, None] * size
+    felt = feels(A)
     np.fill_diagonal(felt, True)
     for _ in range(len(A)):
         reached = felt @ felt
@@ -72,9 +84,9 @@ def feeling(A: Array) -> list[Indices]:
 def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
     """The impulses of contacts of which each feels the others; arguments as those of `strikes`."""
     v = touch.rate.copy()
-    total = np.zeros(len(v))
+    total, count = np.zeros(len(v)), np.zeros(len(v), dtype=int)
     depends = np.zeros(len(v), dtype=bool)
-    noise, equal, rounds = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed), False, 0
+    noise, rounds = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed), 0
     while rounds < 2 * MOST_ROUNDS:
         struck = v < -noise
         if not (struck.any() or (v + pressed < -noise).any()):
@@ -84,37 +96,50 @@ def struck_together(touch: Touching, A: Array, moves: Mask, pressed: Array, plas
         own = np.flatnonzero((v <= noise) & moves)
         found = one_round(A, v, pressed, own, np.where(struck, e, 0.0), noise)
         z = spread(found.z, own, len(v))
-        if gained(z, v, pressed, A) and struck.any():
-            e = np.where(struck, e[struck].min(), 0.0)
-            found = one_round(A, v, pressed, own, e, noise)
-            z, equal = spread(found.z, own, len(v)), True
         depends[own[found.depends]] = True
         rebound, bears = np.where(struck, -e * v, 0.0), own[found.bears]
         v = v + pressed + A @ z
         v[bears] = rebound[bears]
         pressed = np.zeros(len(v))
         total += z
+        count[bears] += 1
         rounds += 1
         noise = np.maximum(noise, tolerances.CONTACT_RATE * (np.abs(A) @ total))
     v = np.where(np.abs(v) <= noise, 0.0, v)
+    total, v = brought_to_rest(A, total, v, moves, plastic)
+    return Struck(total, v, depends & (total == 0.0), count, np.zeros(len(v), dtype=bool))
+
+
+def struck_in_sequence(touch: Touching, A: Array, moves: Mask, pressed: Array, plastic: Mask) -> Struck:
+    """The same, of contacts that are struck one after another (sequential_impacts.py)."""
+    e = np.where(plastic, 0.0, touch.restitution)
+    noise = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed)
+
+    def solve_impulses(A: Array, v: Array, own: Indices, e: Array) -> tuple[Array, Mask]:
+        part = A[np.ix_(own, own)]
+        found = one_round(part, v[own], np.zeros(len(own)), np.arange(len(own)), e, noise[own])
+        return found.z, found.depends
+
+    found = strike_in_sequence(touch, A, touch.rate + pressed, noise, e, moves, solve_impulses)
+    v = np.where(np.abs(found.rate) <= found.noise, 0.0, found.rate)
+    settled = (found.count > 1) & (e > 0.0) & (v == 0.0)
+    total, v = brought_to_rest(A, found.impulses, v, moves, plastic)
+    return Struck(total, v, found.depends & (total == 0.0), found.count, settled)
+
+
+def brought_to_rest(A: Array, total: Array, v: Array, moves: Mask, plastic: Mask) -> tuple[Array, Array]:
+    """The impulses and rates with those of plastic contacts that would still open by less than is seen brought to 0."""
     if (plastic & (v > 0.0)).any():
         own = np.flatnonzero(moves & (v == 0.0) & (total > 0.0) | plastic & (v > 0.0))
         total[own] -= np.linalg.lstsq(A[np.ix_(own, own)], v[own], rcond=tolerances.CONTACT_DEPENDS)[0]
         v[own] = 0.0
-    every = np.ones(len(v), dtype=bool)
-    return Struck(total, v, depends & (total == 0.0), equal & every)
+    return total, v
 
 
 def one_round(A: Array, v: Array, pressed: Array, own: Indices, e: Array, noise: Array) -> Pivots:
     """Impulses of one round: those that leave v+ >= -e v-."""
     q = (v + pressed + e * v)[own]
     return complementary(A[np.ix_(own, own)], q, noise[own])
-
-
-def gained(z: Array, v: Array, pressed: Array, A: Array) -> bool:
-    """Whether impulses add energy: work by the mean of the rates before and behind, beyond rounding."""
-    work = 0.5 * z * (2.0 * v + pressed + A @ z)
-    return bool(work.sum() > tolerances.SUM_ROUNDING * np.abs(work).sum())
 
 
 def undecided(t: float, name: str) -> SolveError:

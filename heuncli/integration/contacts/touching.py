@@ -25,7 +25,7 @@ class Touching:
 
     which (k,): places among the layout's; loads (k, n_b, 6): what each puts on the bodies where it bears 1, moment
     about the joint point and force; rate (k,): of opening; noise (k,): what rounding makes of it; reach (k,): of the
-    gap; restitution (k,).
+    gap; restitution (k,); length (k,): what the unit of the gap is of a length [m].
     """
 
     which: Indices
@@ -34,6 +34,7 @@ class Touching:
     noise: Array
     reach: Array
     restitution: Array
+    length: Array
 
     def some(self, own: Indices | Mask) -> Touching:
         """Some of them."""
@@ -70,6 +71,7 @@ def touching(layout: Layout, at: Recovered, closed: Mask, event: int | None, las
         noise=np.maximum(noise, reaches / (last or 1.0)),
         reach=reaches,
         restitution=np.array([contact.restitution for contact in own]),
+        length=layout.tables["closures"]["weight"][[contact.row for contact in own]],
     )
 
 

@@ -5,6 +5,7 @@ Changes the run: it goes on from the state behind.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,11 +13,12 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.errors import Problem, SolveError
 from heuncli.integration.contacts.blows import GivenBlow, Jump, schedule, strike
+from heuncli.integration.contacts.shared_impulses import sharing_sentences
 from heuncli.integration.evaluator import Evaluator
 from heuncli.integration.run.progress import Progress
 from heuncli.integration.segments import Segment
 from heuncli.mechanism.model import Mechanism
-from heuncli.records import replace
+from heuncli.records import record, replace
 from heuncli.results import Array
 from heuncli.tree.layout import Layout
 
@@ -44,7 +46,7 @@ class Interruptions:
         The rope, if there is one, that would have to push in one of them: the run then ends before it. Raises
         SolveError if that is the start.
         """
-        while self.due and self.due[0].after <= t:
+        while self.due and self.due[0].is_due(t):
             jump = self.meet(self.due.pop(0), reached)
             if jump is None:
                 continue
@@ -105,9 +107,17 @@ class Interruptions:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is to be told of the contacts."""
-        if self.contacts is None:
-            return ()
-        return (*self.contacts.notes, *(f"{name} did not catch" for name in self.contacts.latches.idle))
+        return notes_of(self.scene.layout, self.done, self.contacts)
+
+
+def notes_of(layout: Layout, jumps: Sequence[Jump], contacts: Contacts | None) -> tuple[str, ...]:
+    """What is to be told of contacts and the blows of a run: how they share these first."""
+    found = []
+    if any(jump.shared for jump in jumps):
+        found += sharing_sentences([(jump.time, jump.shared) for jump in jumps], layout.mechanism.impacts)
+    if contacts is not None:
+        found += [*contacts.notes, *(f"{name} did not catch" for name in contacts.latches.idle)]
+    return tuple(found)
 
 
 def closed_at_start(scene: Evaluator) -> Array:
@@ -126,7 +136,15 @@ def contacts_of(evaluator: Evaluator, last: float) -> Contacts | None:
     return Contacts(evaluator, last)
 
 
-def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
+@record
+class AtOnce:
+    """What happens at the only instant of a scene: the blow, if there is one, and what is to be told of contacts."""
+
+    jumps: tuple[Jump, ...] = ()
+    notes: tuple[str, ...] = ()
+
+
+def at_once(evaluator: Evaluator, state: Array, t: float) -> AtOnce:
     """The blow at the only instant of a scene: the one that is given, and that of its contacts."""
     contacts = contacts_of(evaluator, t)
     given = [one for one in schedule(evaluator.layout.mechanism, 0.0) if t == 0.0][:1]
@@ -136,8 +154,8 @@ def at_once(evaluator: Evaluator, state: Array, t: float) -> tuple[Jump, ...]:
         jump = contacts.meet(one, state, t, None) if contacts is not None else strike(evaluator, one, state, t)
         if jump is not None:
             require_pull(evaluator.layout.mechanism, pushing(evaluator.layout, jump))
-            return (jump,)
-    return ()
+            return AtOnce((jump,), notes_of(evaluator.layout, [jump], contacts))
+    return AtOnce()
 
 
 def pushing(layout: Layout, jump: Jump) -> str | None:

@@ -128,10 +128,11 @@ def keys_in(node: Node, above: list[str], names: Names) -> Collection[str]:
     """
     place = tuple(above)
     if place not in names.keys:
-        known = [key for word in node for key in named(word, names)]
+        struck = above[:1] == [BLOWS]
+        known = [key for word in node for key in named(word, names, struck)]
         if above[:1] == ["coordinates"]:
             known = [key for key in known if has_coordinate(above[1:], key, names)]
-        if len(above) > 1 and above[-2] == "stops":
+        if len(own := above[2:] if struck else above) == 2 and own[0] == "stops":
             known = [key for key in known if key in loads_of_stop(stop_meant(above[-1], names))]
         names.keys[place] = dict.fromkeys(known)
     return names.keys[place]
@@ -241,14 +242,16 @@ def keys_behind(path: str, names: Names) -> list[str]:
     return list(reached.known) if isinstance(reached, UnknownWord) else []
 
 
-def named(word: str, names: Names) -> list[str]:
-    """What stands in the results where the schema has this word."""
+def named(word: str, names: Names, struck: bool = False) -> list[str]:
+    """What stands in the results where the schema has this word; struck: in those of a blow."""
     entries = names.entries
     match word:
         case "POINT":
             return [f"{body}.{point}" for body, points in names.points.items() if body != GROUND for point in points]
         case "ELEMENT":
             shared = [f"drives.{name}" for name in entries["drives"] if name in entries["forces"]]
+            earlier = {name for block in ("forces", "drives", "stops", "latches") for name in entries[block]}
+            shared += [f"couplings.{name}" for name in entries["couplings"] if name in earlier]
             own = ("forces", "drives", "stops", "latches", "couplings", "rolling")
             return [*(name for block in own for name in entries[block]), *shared]
         case "BODY":
@@ -270,7 +273,10 @@ def named(word: str, names: Names) -> list[str]:
         case "EVENT":
             return [*entries["events"], *entries["latches"]]
         case "CAUSE":
-            return ["gravity", *entries["forces"], "drives", "motion"]
+            if struck:  # what may strike: blows, drives, and what closes
+                blocks = ("impulses", "joints", "stops", "latches", "couplings")
+                return [*(name for block in blocks for name in entries[block]), "drives"]
+            return ["gravity", *entries["forces"], *entries["couplings"], "drives", "motion"]
     return [word]
 
 

@@ -8,6 +8,8 @@ from heuncli import tolerances
 from heuncli.joint_kinds import TYPES, Kind, named
 from heuncli.named_tuples import NamedTuple
 from heuncli.spec import format as f
+from heuncli.spec import format_couplings as fc
+from heuncli.spec.names import CAUSES
 from heuncli.spec.rules import paths
 from heuncli.spec.rules.registry import DraftDocument, Violation, rule
 from heuncli.spec.semantics import Limits, drive_of, limitable, limits_of
@@ -131,18 +133,40 @@ def restitution(draft: DraftDocument) -> Iterator[Violation]:
     yield from paths.struck(draft)
 
 
+def struck_joints(draft: DraftDocument) -> list[str]:
+    """The joints that open and close with blows: ropes, and curves that press on one side."""
+    opening = f.RodJoint | f.CurveJoint
+    return [n for n, j in draft.document.joints.items() if isinstance(j, opening) and j.restitution is not None]
+
+
+def has_load(coupling: fc.ScrewEntry | fc.RopeEntry) -> bool:
+    """Whether a coupling is a load by its name: a rope that stretches, a thread that rubs."""
+    return getattr(coupling, "stiffness", None) is not None or getattr(coupling, "friction", None) is not None
+
+
 @rule("shared-name")
 def shared_name(draft: DraftDocument) -> Iterator[Violation]:
     """What strikes, and what stands beside it in the results, is told by its name."""
     entries = draft.names.entries
-    opening = f.RodJoint | f.CurveJoint
-    ropes = [n for n, j in draft.document.joints.items() if isinstance(j, opening) and j.restitution is not None]
+    joints, couplings = struck_joints(draft), draft.document.couplings
+    struck = [name for name, own in couplings.items() if getattr(own, "restitution", None) is not None]
+    loads = [name for name, own in couplings.items() if isinstance(own, fc.ScrewEntry | fc.RopeEntry) and has_load(own)]
     beside: dict[str, dict[str, Collection[str]]] = {
-        "impulses": {"joints": ropes, "drives": entries["drives"]},
-        "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")},
-        "latches": {block: entries[block] for block in ("joints", "forces", "drives", "impulses", "stops", "events")},
+        "impulses": {"joints": joints, "couplings": struck, "drives": entries["drives"]},
+        "stops": {block: entries[block] for block in ("joints", "forces", "drives", "impulses")}
+        | {"couplings": struck},
+        "latches": {block: entries[block] for block in ("joints", "forces", "drives", "impulses", "stops", "events")}
+        | {"couplings": struck},
         "rolling": {block: entries[block] for block in ("couplings", "forces", "drives", "stops", "latches")},
+        "forces": {"couplings": loads},
     }
+    if struck:
+        beside["joints"] = {"couplings": [name for name in struck if name in joints]}
+    for name in CAUSES.intersection(joints):
+        hint = f"call it {name}_1, say"
+        yield Violation(
+            ("joints", name), f"'{name}' is taken: it is a cause of its own, and this strikes", hint, key=True
+        )
     for block, others in beside.items():
         for name in entries[block]:
             for other, names in others.items():

@@ -55,9 +55,9 @@ class MeasureRequest(NamedTuple):
 
 def report_of(path: str) -> frozenset[str] | None:
     """Which report a path needs; None where its first word does not say."""
-    first, *rest = path.split(".")
-    report = results_schema.report_of(first)
-    return frozenset({report, *({SHARES} & set(rest))}) if report else None
+    words = path.split(".")
+    report = results_schema.report_of(words[0])
+    return frozenset({report, SHARES} if results_schema.names_shares(words) else {report}) if report else None
 
 
 def value(asked: MeasureRequest, study: Study) -> Peak:

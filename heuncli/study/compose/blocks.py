@@ -23,7 +23,7 @@ from heuncli.kinetostatics.coordinates import coordinates, points
 from heuncli.kinetostatics.coupling_numbers import coupling_block
 from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
 from heuncli.kinetostatics.energy import system_vector
-from heuncli.kinetostatics.foundation import foundation
+from heuncli.kinetostatics.foundation import element_keys, foundation
 from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
 from heuncli.kinetostatics.momentum import Momenta, momenta
 from heuncli.kinetostatics.reactions import JointLoads
@@ -56,7 +56,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     for load in recovery.asked_joints if axes != "world" and "joints" in shown else ():
         put_in_axes(shown["joints"][load.joint.name], axes_at(load.joint, states, axes))
     if shown and recovery.decided is not None:
-        recovery.decided.show(states, shown, recovery.couplings, axes)
+        recovery.decided.show(states, shown, recovery.couplings, axes, element_keys(mechanism))
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
@@ -74,7 +74,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "sections" in wanted:
         shown["sections"] = sections(recovery, SHARES in wanted)
     if "forces" in wanted:
-        shown["forces"] = forces(recovery.loads, states, {own.name for own in mechanism.couplings})
+        shown["forces"] = forces([own for own in recovery.loads if mechanism.block_of(own.load) == "forces"], states)
     return shown
 
 
@@ -118,7 +118,8 @@ def joint_block(load: JointLoads) -> JointBlock:
     if load.tension is not None:
         block["tension"] = load.tension
     if load.joint.bearing is not None:
-        block["pressure"] = np.sqrt(np.sum(load.force**2, axis=1)) / load.joint.bearing
+        carried = block["radial"] if "radial" in block else np.sqrt(np.sum(load.force**2, axis=1))
+        block["pressure"] = carried / load.joint.bearing
     if load.joint.path is not None and load.joint.path.radius:
         block["contact_point"] = load.points.on_path(load.joint, load.point)
     return block
@@ -199,12 +200,10 @@ def pretension(of: CouplingLoads, loads: Sequence[AppliedLoad]) -> list[Action]:
     return [own.action for own in loads if own.load.name == of.coupling.name]
 
 
-def forces(loads: Sequence[AppliedLoad], states: BodyStates, coupled: Set[str] = frozenset()) -> dict[str, ForceBlock]:
-    """Values, lengths, rates and powers of the applied loads; coupled: whose own, as pretension, they tell."""
+def forces(loads: Sequence[AppliedLoad], states: BodyStates) -> dict[str, ForceBlock]:
+    """Values, lengths, rates and powers of applied loads that are forces of the spec."""
     block: dict[str, ForceBlock] = {}
     for applied in loads:
-        if applied.load.name in coupled:
-            continue
         own: ForceBlock = {"value": applied.value}
         if isinstance(applied.load, PairLoad):
             own["length"] = applied.length

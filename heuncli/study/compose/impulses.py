@@ -32,6 +32,7 @@ from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History
 
 UNTIMED = frozenset({"about", "s", "side"})  # of the blocks: the same at all blows
+OPEN = "open"  # of a block: the list of its open components
 STRUCK = frozenset({"foundation", "joints", "sections"})
 WRENCH = {"N·s": ("force", *SECTION_FORCES), "N·m·s": ("moment", *SECTION_MOMENTS)}
 OF_COUPLINGS = {
@@ -208,8 +209,8 @@ def of_one(block: Block, k: int) -> Block:
             own[name] = value[k]
         else:
             own[name] = value
-    if "open" in own:
-        own["open"] = [path for path in own["open"] if is_open(own, path)]
+    if isinstance(own.get(OPEN), list):  # a stop, joint or section may have this name, too: it leads to a block
+        own[OPEN] = [path for path in own[OPEN] if is_open(own, path)]
     return own
 
 

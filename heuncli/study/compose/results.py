@@ -166,8 +166,8 @@ def not_at_rest(recovery: Recovery) -> Block:
 
 
 def contacts_of(history: History) -> Block:
-    """What is told of contacts: who was struck at once, who came to rest after how many strikes."""
-    notes = history.checked.run.notes if history.checked is not None else ()
+    """What is told of contacts: how they share blows, who came to rest after how many strikes."""
+    notes = history.checked.run.notes if history.checked is not None else history.notes
     return {"contacts": list(notes)} if notes else {}
 
 

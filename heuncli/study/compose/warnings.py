@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from heuncli import tolerances
+from heuncli.integration.contacts.shared_impulses import sharing_warning
 from heuncli.integration.diagnosis.off_sheaves import slanting
 from heuncli.kinetostatics.couplings import CouplingLoads
 from heuncli.mechanism.model import Mechanism
@@ -37,6 +38,7 @@ def warnings(
     return (
         *unbalanced(residual),
         *(warning for cuts in setup.cuts for warning in cuts.warnings),
+        *sharing_warning([(jump.time, jump.shared) for jump in history.blows], setup.spec.analysis.impacts),
         *(of_the_motion(setup, history) if history.checked is not None else of_ropes(setup, recovery, joints)),
         *singular,
         *slanting(setup.scene.layout, recovery.recovered),

@@ -63,7 +63,7 @@ def noticed(setup: Setup) -> tuple[Method, str] | None:
         except Stiff as stiff:
             return stiff.method, stiff.told
         except Eventful as left:
-            jumps = discontinuities_of(mechanism, 0.0, left.reached)
+            jumps = discontinuities_of(mechanism, left.reached)
             runs = Runs(setup.runner, np.array([left.reached]), jumps, None, setup.method)
             return (runs.method, left.told) if try_fewer_stages(runs, left) else None
     return None
@@ -87,7 +87,7 @@ def pace(setup: Setup, local: float) -> list[str]:
 
 def begun(setup: Setup, local: float, last: float, *, watched: bool = False) -> Trajectory:
     """The first part of the run."""
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, last))
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, last))
     assert setup.method is not None
     deadline = time.monotonic() + PATIENCE
     request = MotionTask([0.0, last], local, setup.method, jumps, deadline=deadline, most_steps=MOST_STEPS)

@@ -35,7 +35,7 @@ NOTHING_STIFF = "not stiff, as far as can be seen beforehand: no spring, damper,
 def first_choice(layout: Layout, spec: Spec) -> Method:
     """The method a motion is begun with that is not known to be stiff; layout: of what is integrated."""
     fine = spec.analysis.tolerance <= tolerances.VERNER98 and is_smooth(layout)
-    return method_of(FINE if fine and not discontinuities_of(layout.mechanism, 0.0, last_of(spec)) else DEFAULT)
+    return method_of(FINE if fine and not discontinuities_of(layout.mechanism, last_of(spec)) else DEFAULT)
 
 
 def last_of(spec: Spec) -> float:

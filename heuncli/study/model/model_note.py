@@ -41,6 +41,8 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
     }  # fmt: skip
     if scene.start.moved:
         block["moved"] = list(scene.start.moved)
+    if scene.start.started:
+        block["started"] = list(scene.start.started)
     if mechanism.planar:
         block["plane"] = "declared"
     if mechanism.couplings:
@@ -52,6 +54,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
         block["pose_freedoms"] = freedoms_of_pose(runner) - scene.undetermined
         block["reasons"].insert(1, poses_and_speeds(block))
     if layout.contacts:
+        block["impacts"] = mechanism.impacts
         block["reasons"].append(one_sided(layout, runner.start_holding[: len(layout.contacts)] > 0.0))
     if found.at_start > found.generic:
         more = count(found.at_start - found.generic, "condition depends", "conditions depend")

@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from heuncli.expressions.programs import Expression, is_of_point
+from heuncli.expressions.programs import Expression, is_of_load, is_of_point
 from heuncli.records import fields
 from heuncli.results_schema import BLOWS, EVENTS, SHARES
-from heuncli.spec.models import Condition, End, Latch, Spec
+from heuncli.spec.models import Condition, End, Spec
 from heuncli.study.model.counts_and_lists import some
 from heuncli.study.model.selection import Selection, entries_of
 
@@ -32,6 +32,8 @@ def bodies_of(item: Any, spec: Spec) -> set[str]:
         return {item}
     if isinstance(item, End):
         return {item.body} & spec.bodies.keys()
+    if type(item) is tuple:  # several of one name
+        return set().union(*(bodies_of(one, spec) for one in item))
     found: set[str] = set()
     for name, value in named_fields(item):
         if isinstance(value, End):
@@ -53,15 +55,15 @@ def named_fields(item: Any) -> Iterator[tuple[str, Any]]:
 
 
 def expressions_in(item: Any) -> Iterator[Expression]:
-    """The values in time of a force or drive, the conditions of a blow or latch."""
-    for _, value in named_fields(item):
-        if isinstance(value, Condition):
-            yield value.value
-        if isinstance(value, Latch):
-            yield from (condition.value for condition in value.conditions)
-        for member in value if type(value) is tuple else (value,):
-            if isinstance(member, Expression):
-                yield member
+    """The values in time of a force or drive, of a rope's length, of a bushing; the conditions of a blow or latch."""
+    if isinstance(item, Expression):
+        yield item
+    elif type(item) is tuple:
+        for member in item:
+            yield from expressions_in(member)
+    elif hasattr(item, "_fields") or hasattr(item, "__record_fields__"):
+        for _, value in named_fields(item):
+            yield from expressions_in(value)
 
 
 def followed(item: Any, spec: Spec) -> set[str]:
@@ -71,9 +73,11 @@ def followed(item: Any, spec: Spec) -> set[str]:
 
 
 def read_at(name: str, spec: Spec) -> set[str]:
-    """The bodies of a joint or point that values name."""
+    """The bodies of a joint or point that values name, or of the load whose own line or shift they name."""
     if is_of_point(name):
         return {name.split(".")[1]} & spec.bodies.keys()
+    if is_of_load(name):
+        return bodies_of(spec.forces[name.split(".")[1]], spec)
     return bodies_of(spec.joints[name], spec)
 
 
@@ -88,12 +92,9 @@ def needed(spec: Spec, asked: Selection, ends: Ends) -> set[str]:
     begun = roots(spec, asked)
     if begun is None:
         return set(spec.bodies)
-    moved = [
-        *ends["joints"].values(),
-        *ends["couplings"].values(),
-    ]  # sets of bodies of which none is solved without the others
+    moved: list[set[str]] = []  # sets of bodies of which none is solved without the others
     beside: dict[str, set[str]] = {name: set() for name in spec.bodies}
-    for block in ("forces", "drives", "impulses"):
+    for block in STANDING:
         items: Mapping[str, Any] = getattr(spec, block)
         moved += ends[block].values()
         for name, item in items.items():

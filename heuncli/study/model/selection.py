@@ -11,7 +11,7 @@ from typing import Any
 
 from heuncli.records import record
 from heuncli.results import CertainSum
-from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, report_of
+from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, names_shares, report_of
 from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
 
 EntryKeys = tuple[str, ...]
@@ -69,11 +69,11 @@ def asked_by(paths: Iterable[str], spec: Spec) -> Selection:
         if report is None:
             return EVERYTHING
         entry, rest = entry_at(words, known)
-        reports |= {report, *({SHARES} & set(rest))}
+        reports |= {report, SHARES} if names_shares(words) else {report}
         if entry is None:
             whole.add(report)
         else:
-            entries |= {entry, *share_of(rest, spec)}
+            entries |= {entry, *(share_of(rest, spec) if names_shares(words) else ())}
     return Selection(frozenset(reports), frozenset(entry for entry in entries if REPORT_OF[entry[0]] not in whole))
 
 
@@ -105,9 +105,19 @@ def entries_of(spec: Spec) -> dict[EntryKeys, dict[str, Any]]:
     """
     bodies = {name: name for name in spec.bodies}
     points = {f"{name}.{point}": name for name, body in spec.bodies.items() for point in body.points}
-    own = {f"drives.{name}": drive for name, drive in spec.drives.items() if name in spec.forces}
     stops = {**spec.stops, **spec.latches}
-    elements = {**spec.drives, **spec.forces, **stops, **spec.couplings, **own}
+    elements: dict[str, Any] = {}
+    for block, entries in {
+        "forces": spec.forces,
+        "stops": stops,
+        "drives": spec.drives,
+        "couplings": spec.couplings,
+    }.items():
+        for name, entry in entries.items():  # of one name the later ones have their block before it, on the ground
+            if name in elements:
+                elements |= {f"{block}.{name}": entry, name: (elements[name], entry)}
+            else:
+                elements[name] = entry
     return {
         ("bodies",): bodies, ("points",): dict(points), ("coordinates",): dict(spec.joints),
         ("foundation",): dict.fromkeys(PARTS),

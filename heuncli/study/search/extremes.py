@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.expressions.discontinuities import MOST_EQUAL
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array, Extremes, Indices, Mask, Results
 from heuncli.study.search.intervals import FOURTH, Intervals, ceiling, completed, joined, promised
@@ -312,7 +313,7 @@ def _varies(values: Array) -> Mask:
 
 def sides_of_jumps(times: Array) -> Mask:
     """Which neighbouring instants are the two sides of a jump: no farther apart than rounding, (n_t - 1,)."""
-    return np.asarray(times[1:] - times[:-1] <= 8.0 * tolerances.EPS * np.abs(times[1:]))
+    return np.asarray(times[1:] - times[:-1] <= 2.0 * MOST_EQUAL * tolerances.EPS * np.abs(times[1:]))
 
 
 def filled(times: Array) -> Array:

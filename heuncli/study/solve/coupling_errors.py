@@ -23,7 +23,7 @@ def told_of(
 ) -> Iterator[tuple[str, Array]]:
     """All of it; applied: loads, of which some are couplings', as the pretension of belts."""
     for own in couplings:
-        beside = [action for action in applied if action.name == own.coupling.name]
+        beside = [action for action in applied if own.coupling.has_load and action.name == own.coupling.name]
         on = own.on_bodies(beside).values()
         for name, values in zip(("place", "force", "moment"), zip(*on, strict=True), strict=True):
             yield name, np.stack(values, axis=1)

@@ -51,7 +51,8 @@ class History:
     of the check runs; jumps: instants at which a load or drive jumps or bends, events and blows among them; singular:
     those of singular poses that the run came through; seconds: what took how long;
     errors: by kind and unit, of one instant those of shares by cause;
-    compared: of one instant and one beside it, what their errors were made of.
+    compared: of one instant and one beside it, what their errors were made of;
+    notes: of one instant what is to be told of contacts; those of a motion are in its run.
     """
 
     times: Array
@@ -66,6 +67,7 @@ class History:
     seconds: Mapping[str, float] = MappingProxyType({})
     errors: Mapping[tuple[str, str], float] = MappingProxyType({})
     compared: SeenInstants | None = None
+    notes: tuple[str, ...] = ()
 
     @property
     def changes(self) -> tuple[Changes, ...]:
@@ -121,7 +123,7 @@ def begin(setup: Setup) -> tuple[float, ...]:
     first = setup.runner.recovered(np.zeros(1), setup.scene.layout.y0[None, :])
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
-    jumps = tuple(discontinuities_of(setup.scene.mechanism, 0.0, float(setup.spec.analysis.times[-1])))
+    jumps = tuple(discontinuities_of(setup.scene.mechanism, float(setup.spec.analysis.times[-1])))
     require_steps(len(jumps) + 1, setup.method)
     return jumps
 
@@ -212,8 +214,10 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     others = [moved_start(layout)] if setup.rest is None else list(setup.rest.beside)
     starts = [layout.y0, *others]
     blows: list[tuple[Jump, ...]] = [() for _ in starts]
+    notes: tuple[str, ...] = ()
     if setup.spec.analysis.type == "impulse" or layout.contacts:
-        blows = [at_once(runner, start, at) for start in starts]
+        found = [at_once(runner, start, at) for start in starts]
+        blows, notes = [one.jumps for one in found], found[0].notes
         starts = [jumps[-1].after if jumps else start for start, jumps in zip(starts, blows, strict=True)]
     times = np.array([at])
     holding = blows[0][-1].holding if blows[0] else held(runner, at, starts[0])
@@ -230,7 +234,7 @@ def state(setup: Setup, at: float, tolerance: float, by_cause: bool = False) -> 
     seconds = {"integrate": 0.0 if setup.rest is None else setup.rest.seconds, "check": 0.0}
     return History(
         times, answers.at, tolerance, estimate, blows=blows[0], beside=tuple(blows[1:]), seconds=seconds,
-        errors=errors.errors_by_cause(), compared=None if setup.steady else errors.last,
+        errors=errors.errors_by_cause(), compared=None if setup.steady else errors.last, notes=notes,
     )  # fmt: skip
 
 

@@ -58,7 +58,9 @@ class Store:
         if name is not None:
             place_of(name)
         with told_errors(self.name):
-            self.connection = sqlite3.connect(name or "", timeout=PATIENCE, isolation_level=None)
+            # an absolute path: SQLite has meanings of its own for ":memory:" and "file:..."
+            where = str(Path(name).absolute()) if name is not None else ""
+            self.connection = sqlite3.connect(where, timeout=PATIENCE, isolation_level=None)
             begun(self.connection, self.name, kept=name is not None)
 
     def __enter__(self) -> Store:
