@@ -55,7 +55,7 @@ class FollowedRun:
     @cached_property
     def jumps(self) -> tuple[float, ...]:
         """The instants at which what is given in time jumps or bends."""
-        return tuple(discontinuities_of(self.layout.mechanism, 0.0, self.last))
+        return tuple(discontinuities_of(self.layout.mechanism, self.last))
 
     def trajectory(self, times: Array, also: Array | None = None) -> Trajectory:
         """The run, answered at some instants (n,), ascending; also (m,): further ones at which steps are to end."""
