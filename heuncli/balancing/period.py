@@ -96,7 +96,8 @@ def over_period(spec: Spec, seconds: float, asked: BalanceOptions, about: Array)
     both = TwoPeriods(study, seconds, float(study.history.times[-1]) - seconds, about)
     nodes, settled = both.nodes()
     last, before = (both.effects(nodes, nodes.places, which) for which in (False, True))
-    off = {name: difference(nodes, *(sums(own)[name] for own in (before, last)), last.terms[name]) for name in KINDS}
+    one, two = sums(before), sums(last)
+    off = {name: difference(nodes, one[name], two[name], last.terms[name]) for name in KINDS}
     most = max(own.part for own in off.values())
     if most > tolerances.COMES_BACK:
         message = f"--period {seconds:g} s: the last period and the one before differ by {most:.1g} of the mean"

@@ -46,7 +46,7 @@ class Pieces(NamedTuple):
     sizes: Array
     before: Array
 
-    def some(self, which: Mask) -> Pieces:
+    def some(self, which: Mask | Indices) -> Pieces:
         """Some of them."""
         return Pieces(*(x[which] for x in self))
 
