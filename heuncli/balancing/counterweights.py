@@ -56,6 +56,8 @@ def least(cycle: Cycle, places: Sequence[WeightPlace], about: Array, force: floa
     """The weights with the least mean of |force F|² + |moment M|² over the cycle; moment [1/m] counts against force."""
     found = mass_effects(cycle, about)
     weigh = np.repeat([force, moment], 3)
+    often = np.sqrt(cycle.nodes.weights * len(cycle.nodes.weights))  # by which the mean of squares is one over rows
+    weigh = often[:, None] * weigh
     left = -np.concatenate([found.force.sum(axis=1), found.moment.sum(axis=1)], axis=1) * weigh
     unit = max(force, moment * (cycle.size + float(np.abs(about - cycle.states.centre).max())))
     candidates = [candidate(cycle, place, about, weigh) for place in places]
@@ -103,8 +105,8 @@ def candidate(cycle: Cycle, at: WeightPlace, about: Array, weigh: Array) -> Cand
             square[:, 3:, i, j] = -0.5 * both
     return Candidate(
         replace(at, place=place), radius, across,
-        (by_mass * weigh).ravel(), (by_product * weigh[:, None]).reshape(-1, 2),
-        (square * weigh[:, None, None]).reshape(-1, 2, 2),
+        (by_mass * weigh).ravel(), (by_product * weigh[:, :, None]).reshape(-1, 2),
+        (square * weigh[:, :, None, None]).reshape(-1, 2, 2),
     )  # fmt: skip
 
 

@@ -8,16 +8,17 @@ Where several drives turn the scene in step it is followed in time as it stands,
 from __future__ import annotations
 
 import math
+from functools import cached_property
 
 import numpy as np
 
 from heuncli import tolerances
 from heuncli.balancing.choice import CyclePlan
+from heuncli.balancing.followed import FollowedRun
+from heuncli.balancing.nodes import EvenNodes, Nodes, PieceNodes
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.integration.determined_motion import determined
-from heuncli.integration.methods.followed import FOLLOWED
-from heuncli.integration.run.request import MotionTask
 from heuncli.integration.run.runner import Runner, ready
 from heuncli.kinetostatics.bodies import BodyStates, body_states
 from heuncli.mechanism.couplings import Coupling
@@ -28,9 +29,7 @@ from heuncli.spec.models import Drive
 from heuncli.study.model.setup import reduced_runner
 from heuncli.tree.prepare import PreparedScene, arranged
 
-LOCAL = 1e-9  # tolerance of a step that is followed: its instants are solved to rounding whatever it is
-SAMPLES, MOST_SAMPLES = 64, 4096
-QUARTER = 4  # the last so many-th part of the orders tells whether there are enough samples
+MOST_SAMPLES = 1024  # even angles of a turn, at most of what is smooth
 DRIVE = "cycle"
 TOLD = ("path-ends", "no-value")  # codes of errors that say why a scene cannot be followed on
 
@@ -48,24 +47,39 @@ class FollowedScene:
     rate: float
     turns: int
 
-    def at(self, count: int) -> Cycle:
-        """The cycle at equal angles. Raises SolveError where the scene does not go round, or comes round elsewhere."""
-        length = 2.0 * math.pi * self.turns
-        shares = np.arange(count + 1) / count
-        times = shares * length / abs(self.rate)
+    @cached_property
+    def followed(self) -> FollowedRun:
+        """Its run. Raises SolveError where the scene does not go round, or comes round elsewhere."""
+        own = FollowedRun(self.scene.layout, self.runner, self.begin, self.rate, self.turns)
         try:
-            run = self.runner.trajectory(MotionTask(times, LOCAL, FOLLOWED, ()))
+            run = own.run
         except (SolveError, LimitError) as error:
             if isinstance(error, LimitError) and error.problems[0].code != "step-limit":
                 raise
             raise SolveError(self.not_round(error)) from None
-        found = self.runner.recovered(times, run.states)
-        states = at_unit_rate(body_states(self.scene.layout, found), self.rate)
-        require_closed(self.scene, states, self.turns)
-        order = np.arange(count) if self.rate > 0.0 else (-np.arange(count)) % count
+        there = body_states(self.scene.layout, self.runner.recovered(run.times[[0, -1]], run.states[[0, -1]]))
+        require_closed(self.scene, there, self.turns)
+        return own
+
+    def at(self, nodes: Nodes) -> Cycle:
+        """The cycle at the angles of nodes."""
+        if isinstance(nodes, EvenNodes):
+            order = np.arange(nodes.count) if self.rate > 0.0 else (-np.arange(nodes.count)) % nodes.count
+            x = nodes.grid[:-1]
+        else:
+            assert isinstance(nodes, PieceNodes)
+            order, x = np.arange(len(nodes.places)), nodes.places
+        states = self.states(x)
         own = BodyStates(**{name: values[order] for name, values in fields(states).items()})
-        angles = self.begin + length * shares[:-1]
-        return Cycle(self.scene.mechanism, self.turns, angles, own, self.scene.layout.size)
+        return Cycle(self.scene.mechanism, nodes, own, self.scene.layout.size)
+
+    def states(self, x: Array) -> BodyStates:
+        """The bodies at places of the run (n,), ascending [rad], moved at unit rate."""
+        return at_unit_rate(body_states(self.scene.layout, self.followed.recovered(x)), self.rate)
+
+    def even(self, count: int) -> EvenNodes:
+        """So many equal angles of its cycle."""
+        return EvenNodes(self.begin, self.turns, count)
 
     def not_round(self, error: SolveError | LimitError) -> Problem:
         """What is told of a scene that cannot be followed over its cycle."""
@@ -80,13 +94,17 @@ class FollowedScene:
 
 @record
 class Cycle:
-    """A scene of a size [m] at equal angles (n,) over a cycle, moved at unit rate; behind them as at first."""
+    """A scene of a size [m] at the nodes of a cycle, moved at unit rate; behind it as at first."""
 
     mechanism: Mechanism
-    turns: int
-    angles: Array
+    nodes: Nodes
     states: BodyStates
     size: float
+
+    @property
+    def angles(self) -> Array:
+        """Those of the nodes, (n,)."""
+        return self.nodes.angles
 
 
 def turning(scene: PreparedScene, plan: CyclePlan) -> FollowedScene:

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli.balancing.cycle import Cycle
+from heuncli.balancing.nodes import Nodes
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.records import record
@@ -29,7 +30,7 @@ class MassEffects:
     inertia [kg m2] and of ½ dε/dφ. terms: what force, moment and torque are sums of, whose rounding is none of theirs.
     """
 
-    angles: Array
+    nodes: Nodes
     force: Array
     orbital: Array
     spin: Array
@@ -39,6 +40,11 @@ class MassEffects:
     eps: Array
     half_slope: Array
     terms: Mapping[str, float]
+
+    @property
+    def angles(self) -> Array:
+        """Those of the nodes, (n,)."""
+        return self.nodes.angles
 
     @property
     def moment(self) -> Array:
@@ -63,7 +69,7 @@ def mass_effects(cycle: Cycle, about: Array) -> MassEffects:
     eps = np.einsum("tni,tni->tn", momentum, states.v_centre) + np.einsum("tni,tni->tn", turning, states.omega)
     slope = np.einsum("tni,tni->tn", ma, states.v_centre) + np.einsum("tni,tni->tn", spin, states.omega)
     return MassEffects(
-        cycle.angles, ma, orbital, spin, momentum, first_orbital, turning, eps, slope, terms_of(cycle, masses, arms)
+        cycle.nodes, ma, orbital, spin, momentum, first_orbital, turning, eps, slope, terms_of(cycle, masses, arms)
     )
 
 

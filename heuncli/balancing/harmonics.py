@@ -10,36 +10,9 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.records import record
 from heuncli.results import Array
 
 AXES = np.eye(3)
-
-
-@record
-class Orders:
-    """Complex amplitudes (m, ...) of m orders from 0 on, those of cos(kφ) real and of sin(kφ) negative imaginary."""
-
-    turns: int
-    values: Array
-
-    def order(self, k: int) -> float:
-        """The order of a row, counted per turn."""
-        return k / self.turns
-
-    def at(self, angles: Array) -> Array:
-        """Their sum at angles (n,), (n, ...)."""
-        k = np.arange(len(self.values)) / self.turns
-        return np.asarray(np.real(np.tensordot(np.exp(1j * np.outer(angles, k)), self.values, axes=1)))
-
-
-def orders_of(values: Array, angles: Array, turns: int) -> Orders:
-    """The orders of values (n, ...) at equal angles (n,) [rad] over a cycle; above half the samples none are told."""
-    n = len(angles)
-    found = np.fft.rfft(values, axis=0) / n
-    found[1 : (n + 1) // 2] *= 2.0
-    back = np.exp(-1j * np.arange(len(found)) / turns * angles[0])
-    return Orders(turns, found * back.reshape(-1, *[1] * (values.ndim - 1)))
 
 
 def tail(values: Array, quarter: int, terms: float) -> float:

@@ -8,56 +8,85 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.balancing.choice import CyclePlan
-from heuncli.balancing.cost import LoadedCycle, loaded
+from heuncli.balancing.loaded import LoadedScene, Numbers, loaded
 from heuncli.balancing.results import OrderRow
-from heuncli.balancing.rows import CycleTurning, order_rows
+from heuncli.balancing.rows import CycleTurning, lengths, order_rows
+from heuncli.balancing.wanted import MOST_ORDERS, WantedOrders, left_beyond
 from heuncli.errors import SolveError
 from heuncli.kinetostatics.energy import power_of_rope
-from heuncli.mechanism.model import Mechanism, path_of_load
+from heuncli.mechanism.model import GROUND, path_of_load
 from heuncli.records import record
 from heuncli.results import Array
 from heuncli.spec.models import Spec
-from heuncli.tolerances import ORDERS_SETTLED
+from heuncli.study.compose.recovery import Recovery
+from heuncli.tolerances import ORDERS_SETTLED, SUM_ROUNDING
 from heuncli.tree.prepare import PreparedScene
-
-SAMPLES = 720  # of a turn: halves of a degree; of laws with kinks orders err by what lies beyond
-HIGHEST = 24.0  # order that is told; of laws with kinks there is no last one
 
 
 @record
 class LoadTorque:
-    """The orders of what loads put on the shaft, and their mean [N m]; note: why there are none, else empty."""
+    """The orders of what loads put on the shaft, their mean [N m] and its error; notes: what is not told, and why."""
 
     rows: tuple[OrderRow, ...] = ()
     mean: float = 0.0
-    note: str = ""
+    error: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
-def load_torque(spec: Spec, scene: PreparedScene, plan: CyclePlan) -> LoadTorque:
-    """The torque of loads and weight over a cycle; none of a scene that has none, or whose loads depend on the time."""
+def load_torque(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: tuple[float, ...] | None) -> LoadTorque:
+    """The torque of loads and weight over a cycle; none of a scene that has none, or whose loads depend on the time.
+
+    asked: orders that are asked for, beside those that count.
+    """
     mechanism = scene.mechanism
     if not mechanism.loads and not mechanism.gravity.any():
         return LoadTorque()
     told = [path_of_load(load) for load in mechanism.loads if any(value.time_dependent for value in load.values)]
     if told:
-        return LoadTorque(note=f"orders of the loads are not told: {told[0]} depends on t")
+        return LoadTorque(notes=(f"orders of the loads are not told: {told[0]} depends on t",))
     rate = plan.rate or 1.0
     try:
-        cycle = loaded(spec, scene, mechanism, plan, rate, SAMPLES * plan.turns)
-        values = torques(cycle, mechanism) / rate
+        found = torques_of(loaded(spec, scene, mechanism, plan, rate))
     except SolveError as error:
-        return LoadTorque(note=f"orders of the loads are not told: {error.problems[0].message}")
-    if rate < 0.0:
-        values = values[(-np.arange(len(values))) % len(values)]
+        return LoadTorque(notes=(f"orders of the loads are not told: {error.problems[0].message}",))
+    nodes, values = found.nodes, found.values[:, :, None] / rate
+    whole = values.sum(axis=1)
     least = ORDERS_SETTLED * float(np.abs(values).max())
-    rows = order_rows(values[:, :, None], cycle.angles, CycleTurning(plan.turns, None, plan.rate), least)
-    return LoadTorque(tuple(row for row in rows if row.order <= HIGHEST), float(values.sum(axis=1).mean()))
+    turning = CycleTurning(plan.turns, None, plan.rate)
+    rows = order_rows(values, nodes, turning, least, wanted=WantedOrders(asked))
+    mean, off = float(nodes.weights @ whole[:, 0]), float(lengths(nodes.errors(whole).order))
+    notes = found.notes
+    last = max((row.order for row in rows), default=0.0) if asked is None else 0.0
+    if last >= MOST_ORDERS:
+        most = left_beyond(nodes, whole, last)
+        notes += (f"orders of the loads beyond {last:g} are not listed, each of {most:.2g} N·m at most: --orders",)
+    return LoadTorque(rows, mean, off, notes)
 
 
-def torques(cycle: LoadedCycle, mechanism: Mechanism) -> Array:
-    """The power of each load, and of the weight, (n, loads + 1) [W]."""
+def torques_of(scene: LoadedScene) -> Numbers:
+    """The power of each load, and of the weight, over the cycle (n, loads + 1) [W]."""
+    first = scene.at_first()
+    return scene.numbers(torques, [torques(first).shape[1]], [rounding_in(first)])
+
+
+def rounding_in(recovery: Recovery) -> float:
+    """What of these powers is rounding: of what loads could do at most at the speeds of their points [W]."""
+    mechanism, states = recovery.setup.scene.mechanism, recovery.states
     masses = np.array([body.mass for body in mechanism.bodies])
-    weight = np.einsum("n,tni,i->t", masses, cycle.states.v_centre, mechanism.gravity)
-    recovery = cycle.recovery
-    ropes = [power_of_rope(cycle.states, own) for own in recovery.couplings if own.coupling.stretched is not None]
+    weights = masses * float(lengths(mechanism.gravity))
+    most = float((lengths(states.v_centre) @ weights).max())
+    for load in recovery.loads:
+        for end, force, moment in load.action.on_bodies():
+            if end.body != GROUND:
+                speed, turning = lengths(states.velocity(end.body, end.position)), lengths(states.omega[:, end.body])
+                most += float((lengths(force) * speed + lengths(moment) * turning).max())
+    return SUM_ROUNDING * most
+
+
+def torques(recovery: Recovery) -> Array:
+    """The power of each load, and of the weight, at some instants, (n, loads + 1) [W]."""
+    mechanism = recovery.setup.scene.mechanism
+    masses = np.array([body.mass for body in mechanism.bodies])
+    weight = np.einsum("n,tni,i->t", masses, recovery.states.v_centre, mechanism.gravity)
+    ropes = [power_of_rope(recovery.states, own) for own in recovery.couplings if own.coupling.stretched is not None]
     return np.stack([*(load.power for load in recovery.loads), *ropes, weight], axis=1)

@@ -17,8 +17,8 @@ class OrderRow:
     """One order of a quantity: component i is amplitude_i · cos(order · φ - phase_i).
 
     with_turn, against: the amplitudes of the two vectors that turn across the cycle's axis; None where it has no fixed
-    one. across: whether nothing acts along the axis. own: the sum of the bodies' own amplitudes. parts: amplitudes and
-    phases of orbital and spin, of a moment.
+    one. across: whether nothing acts along the axis. own: the sum of the bodies' own amplitudes. error: what any of the
+    amplitudes may be off by. parts: amplitudes and phases of orbital and spin, of a moment.
     """
 
     order: float
@@ -27,6 +27,7 @@ class OrderRow:
     size: float
     own: float
     verdict: str
+    error: float = 0.0
     with_turn: float | None = None
     against: float | None = None
     across: bool = False
@@ -45,32 +46,37 @@ class OrderRow:
             found |= {name: {"amplitude": a, "phase": p} for name, (a, p) in self.parts.items()}
         if len(self.amplitude) == 3:
             found |= {"with": self.with_turn, "against": self.against}
-        return found | {"own": self.own, "verdict": self.verdict}
+        return found | {"own": self.own, "verdict": self.verdict, "error": self.error}
 
 
 @record
 class Residual:
-    """What acts over a cycle: root of the mean square, largest, and the angle of that [rad]."""
+    """What acts over a cycle: root of the mean square, largest, and the angle of that [rad]; error: of both."""
 
     rms: float
     peak: float
     at: float
+    error: float = 0.0
 
     def block(self) -> Block:
         """As the JSON has it."""
-        return {"rms": self.rms, "peak": self.peak, "at": self.at}
+        return {"rms": self.rms, "peak": self.peak, "at": self.at, "error": self.error}
 
 
 @record
 class OverCycle:
-    """Root of the mean square and largest magnitude over a cycle; None where redundant joints leave some of it open."""
+    """Root of the mean square and largest magnitude over a cycle; None where redundant joints leave some of it open.
+
+    error: of both.
+    """
 
     rms: float | None
     peak: float | None
+    error: float | None = None
 
     def block(self) -> Block:
         """As the JSON has it."""
-        return {"rms": self.rms, "peak": self.peak}
+        return {"rms": self.rms, "peak": self.peak, "error": self.error}
 
 
 @record
@@ -122,7 +128,7 @@ class Flywheel:
     energy: ΔE [J], what work loads and inertia give and take at an even rate; own: the machine's mean reduced inertia,
     added, and textbook's [kg m2];
     delta: asked, present: without the wheel; even [N m]: the torque that was added so that the cycle closes; start,
-    fastest, slowest [rad/s]: with the wheel.
+    fastest, slowest [rad/s]: with the wheel. error: of each of them, by its name; notes: what is not known of loads.
     """
 
     joint: str
@@ -137,10 +143,13 @@ class Flywheel:
     start: float
     fastest: float
     slowest: float
+    error: Mapping[str, float]
+    notes: tuple[str, ...] = ()
 
     def block(self) -> Block:
         """As the JSON has it; inertia: all that turns."""
-        return {**fields(self), "inertia": self.own + self.added}
+        own = {name: value for name, value in fields(self).items() if name != "notes"}
+        return {**own, "error": dict(self.error), "inertia": self.own + self.added}
 
 
 @record
@@ -156,7 +165,8 @@ class BalanceResults:
     """A scene's balance over a cycle; forces at `rate` [rad/s], where none is known at 1 rad/s.
 
     about (3,) [m]: where moments are taken; place: its name; orders: by quantity (force, moment, torque);
-    shown: the orders that tables show.
+    mean_error: what the means are off by; shown: the orders that tables show;
+    asked: whether these were asked for.
     """
 
     title: str
@@ -173,8 +183,10 @@ class BalanceResults:
     orders: Mapping[str, tuple[OrderRow, ...]]
     words: Mapping[str, str]
     mean: Mapping[str, Any]
+    mean_error: Mapping[str, float]
     residual: Mapping[str, Residual]
     shown: tuple[float, ...]
+    asked: bool = False
     notes: tuple[str, ...] = ()
     counterbalance: Counterbalance | None = None
     flywheel: Flywheel | None = None

@@ -10,13 +10,16 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.balancing.effects import MassEffects
-from heuncli.balancing.harmonics import orders_of, turning_vectors
-from heuncli.balancing.results import OrderRow, Residual
+from heuncli.balancing.harmonics import turning_vectors
+from heuncli.balancing.nodes import Nodes
+from heuncli.balancing.results import OrderRow
 from heuncli.balancing.verdicts import verdict_of
+from heuncli.balancing.wanted import ANY, IN_TABLE, WantedOrders
 from heuncli.records import record, replace
 from heuncli.results import Array
 
 NO_PARTS: Mapping[str, Array] = MappingProxyType({})
+NO_WISHES: Mapping[str, WantedOrders] = MappingProxyType({})
 
 
 @record
@@ -32,11 +35,6 @@ class CycleTurning:
         """What effects at unit rate are multiplied by."""
         return (self.rate or 1.0) ** 2
 
-    @property
-    def backwards(self) -> bool:
-        """Whether the angle falls."""
-        return self.rate is not None and self.rate < 0.0
-
 
 def rounding_of(effects: MassEffects, scale: float) -> dict[str, float]:
     """What is rounding of force, moment and torque at a rate of which `scale` is the square."""
@@ -44,45 +42,60 @@ def rounding_of(effects: MassEffects, scale: float) -> dict[str, float]:
 
 
 def all_rows(
-    effects: MassEffects, turning: CycleTurning, least: Mapping[str, float]
+    effects: MassEffects,
+    turning: CycleTurning,
+    least: Mapping[str, float],
+    wanted: Mapping[str, WantedOrders] = NO_WISHES,
 ) -> dict[str, tuple[OrderRow, ...]]:
     """The orders of force and moment ON the foundation, and of torque, at the rate; below `least` is none."""
     scale = turning.scale
-    angles, torque = effects.angles, scale * effects.half_slope[:, :, None]
+    nodes, torque = effects.nodes, scale * effects.half_slope[:, :, None]
     parts = {"orbital": -scale * effects.orbital, "spin": -scale * effects.spin}
+    flat = replace(turning, axis=None)
     return {
-        "force": order_rows(-scale * effects.force, angles, turning, least["force"]),
-        "moment": order_rows(-scale * effects.moment, angles, turning, least["moment"], parts),
-        "torque": order_rows(torque, angles, replace(turning, axis=None), least["torque"]),
+        "force": order_rows(-scale * effects.force, nodes, turning, least["force"], wanted=wanted.get("force", ANY)),
+        "moment": order_rows(
+            -scale * effects.moment, nodes, turning, least["moment"], parts, wanted.get("moment", ANY)
+        ),
+        "torque": order_rows(torque, nodes, flat, least["torque"], wanted=wanted.get("torque", ANY)),
     }
 
 
 def order_rows(
-    values: Array, angles: Array, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS
-) -> tuple[OrderRow, ...]:
-    """The orders of the sum over the bodies of values (n, bodies, c), up to the last that is no rounding.
+    values: Array, nodes: Nodes, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS,
+    wanted: WantedOrders = ANY,
+) -> tuple[OrderRow, ...]:  # fmt: skip
+    """The orders of the sum over the bodies of values (n, bodies, c), up to the last that counts, and those asked for.
 
-    least: what is below is rounding of what moves; parts: of which the values are sums, told beside them.
+    least: what is below is rounding of what moves, or an error; parts: of which the values are sums, told beside them.
     """
-    turns = turning.turns
-    amplitudes = orders_of(values, angles, turns).values
-    apart = {name: orders_of(part, angles, turns).values for name, part in parts.items()}
+    turns, sum_ = turning.turns, values.sum(axis=1)
+    error = float(lengths(nodes.errors(sum_).order)) + wanted.noise
+    orders = wanted.of(nodes, sum_, max(least, error))
+    amplitudes = nodes.amplitudes(values, orders)
+    apart = {name: nodes.amplitudes(part, orders) for name, part in parts.items()}
     whole, own = amplitudes.sum(axis=1), lengths(amplitudes).sum(axis=1)
-    largest = float(own[1:].max(initial=0.0))
-    rounding = max(tolerances.ORDERS_SETTLED * largest, least)
+    largest = float(own.max(initial=0.0))
+    rounding = max(tolerances.ORDERS_SETTLED * largest, least, error)
     terms = own + sum((lengths(part).sum(axis=1) for part in apart.values()), np.zeros_like(own))
-    last = int(np.flatnonzero(terms > rounding).max(initial=turns))
+    counts = rounding if nodes.last_order is not None else max(IN_TABLE * float(terms.max(initial=0.0)), rounding)
+    last = int(orders[np.flatnonzero(terms > counts).max(initial=turns - 1)])
+    told = np.flatnonzero((orders <= last) | wanted.are_asked(orders, turns))
+    left, none = lengths(whole), np.maximum(tolerances.CANCELS * own, rounding)
+    verdicts = [verdict_of(float(left[i]), float(own[i]), largest, max(least, error)) for i in told.tolist()]
+    none[told[[verdict != "remains" for verdict in verdicts]]] = math.inf
+    a = above(whole, none[:, None])
+    sizes, angles, reach = np.abs(a), phases(a), lengths(a)
+    split_none = np.maximum(tolerances.CANCELS * terms, rounding)[:, None]
+    split = {name: above(part.sum(axis=1), split_none) for name, part in apart.items()}
+    split_told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
     rows = []
-    for k in range(1, last + 1):
-        verdict = verdict_of(float(lengths(whole[k])), float(own[k]), largest, least)
-        none = max(tolerances.CANCELS * float(own[k]), rounding) if verdict == "remains" else math.inf
-        a = above(whole[k], none)
-        row = OrderRow(k / turns, np.abs(a), phases(a), float(lengths(a)), float(own[k]), verdict)
-        row = in_the_plane(row, whole[k], turning, none)
-        none = max(tolerances.CANCELS * float(terms[k]), rounding)
-        split = {name: above(part[k].sum(axis=0), none) for name, part in apart.items()}
-        told = {name: (np.abs(part), phases(part)) for name, part in split.items()}
-        rows.append(replace(row, parts=told) if told else row)
+    for i, verdict in zip(told.tolist(), verdicts, strict=True):
+        row = OrderRow(
+            float(orders[i] / turns), sizes[i], angles[i], float(reach[i]), float(own[i]), verdict, error,
+            parts={name: (size[i], angle[i]) for name, (size, angle) in split_told.items()} or None,
+        )  # fmt: skip
+        rows.append(in_the_plane(row, whole[i], turning, float(none[i])))
     return tuple(rows)
 
 
@@ -91,9 +104,8 @@ def in_the_plane(row: OrderRow, a: Array, turning: CycleTurning, none: float) ->
     if turning.axis is None:
         return row
     P, N = (abs(one[0]) if abs(one[0]) > none else 0.0 for one in turning_vectors(a[None, :], turning.axis))
-    with_turn, against = (N, P) if turning.backwards else (P, N)
     across = bool(abs(a @ turning.axis) <= none)
-    return replace(row, with_turn=float(with_turn), against=float(against), across=across)
+    return replace(row, with_turn=float(P), against=float(N), across=across)
 
 
 def above(a: Array, none: float) -> Array:
@@ -110,12 +122,3 @@ def phases(a: Array) -> Array:
 def lengths(vectors: Array) -> Array:
     """The magnitudes of complex vectors (..., c)."""
     return np.asarray(np.sqrt(np.sum(np.abs(vectors) ** 2, axis=-1)))
-
-
-def residual(values: Array, angles: Array, least: float) -> Residual:
-    """Root of the mean square of the sum over the bodies of values (n, bodies, c), the largest and where."""
-    sizes = lengths(values.sum(axis=1))
-    k = int(np.argmax(sizes))
-    if sizes[k] <= max(tolerances.CANCELS * float(lengths(values).sum(axis=1).max()), least):
-        return Residual(0.0, 0.0, float(angles[0]))
-    return Residual(float(np.sqrt(np.mean(sizes**2))), float(sizes[k]), float(angles[k]))

@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
-from heuncli import tolerances
 from heuncli.balancing.asked import NOTHING_ASKED, BalanceOptions
 from heuncli.balancing.choice import CyclePlan, planned, pressed_alone
-from heuncli.balancing.cycle import MOST_SAMPLES, QUARTER, SAMPLES, Cycle, FollowedScene, axis_of, turning
+from heuncli.balancing.cycle import axis_of, turning
 from heuncli.balancing.effects import mass_effects
-from heuncli.balancing.harmonics import tail
 from heuncli.balancing.results import BalanceResults
 from heuncli.balancing.rows import CycleTurning
+from heuncli.balancing.sampled import sampled
 from heuncli.balancing.told import is_asked, told
 from heuncli.coupled_start.prepared import prepare_coupled
 from heuncli.records import replace
-from heuncli.results import Array
 from heuncli.spec.models import Spec
 from heuncli.study.model.error_places import placed
 from heuncli.study.model.setup import draw
 from heuncli.tree.prepare import PreparedScene
-
-GOING_DOWN = 2.0  # times: samples doubled must lower the highest orders by as much, else these are rounding
 
 
 def balance(spec: Spec, asked: BalanceOptions = NOTHING_ASKED) -> BalanceResults:
@@ -67,11 +61,13 @@ def with_loads(
         return found
     from heuncli.balancing.load_torque import load_torque  # with all that solves loads
 
-    own = load_torque(spec, scene, plan)
-    if own.note or not own.rows:
-        return replace(found, notes=(*found.notes, own.note) if own.note else found.notes)
+    own = load_torque(spec, scene, plan, asked.orders)
+    found = replace(found, notes=(*found.notes, *own.notes))
+    if not own.rows:
+        return found
     rows = tuple(row for row in own.rows if asked.orders is None or is_asked(row.order, asked.orders))
-    return replace(found, orders={**found.orders, "load": rows}, mean={**found.mean, "load": own.mean})
+    means, errors = {**found.mean, "load": own.mean}, {**found.mean_error, "load": own.error}
+    return replace(found, orders={**found.orders, "load": rows}, mean=means, mean_error=errors)
 
 
 def drawn(spec: Spec) -> PreparedScene:
@@ -79,17 +75,3 @@ def drawn(spec: Spec) -> PreparedScene:
     mechanism, _ = draw(spec._replace(sections={}))
     t = spec.analysis.times[0] if spec.analysis.type == "state" and spec.analysis.times else 0.0
     return prepare_coupled(mechanism, t)
-
-
-def sampled(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
-    """The cycle at so many angles that the highest orders are rounding; whether they are."""
-    count, before = SAMPLES * followed.turns, math.inf
-    while True:
-        cycle = followed.at(count)
-        found = mass_effects(cycle, about)
-        kinds = {"force": found.force, "moment": found.moment, "torque": found.half_slope}
-        highest = max(tail(own, QUARTER, found.terms[name]) for name, own in kinds.items())
-        rounding = highest < tolerances.CANCELS and highest * GOING_DOWN > before
-        if highest <= tolerances.ORDERS_SETTLED or rounding or count >= MOST_SAMPLES:
-            return cycle, count < MOST_SAMPLES
-        count, before = 2 * count, highest

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
+import numpy as np
+
 from heuncli import tolerances
 from heuncli.balancing.asked import BalanceOptions
 from heuncli.balancing.effects import MassEffects
+from heuncli.balancing.over_cycle import residuals
 from heuncli.balancing.results import BalanceResults, OrderRow
-from heuncli.balancing.rows import CycleTurning, all_rows, residual, rounding_of
+from heuncli.balancing.rows import CycleTurning, all_rows, lengths, rounding_of
 from heuncli.balancing.verdicts import in_words
+from heuncli.balancing.wanted import IN_TABLE, WantedOrders
 from heuncli.results import Array
 from heuncli.spec.models import Spec
 
 NOTHING: Mapping[str, float] = MappingProxyType({})
-IN_TABLE = 1e-4  # of the largest order: smaller ones do not stand in a table unless they are asked for
 MOST_ROWS = 12
 
 
@@ -23,11 +26,12 @@ def told(
     spec: Spec, coordinate: str, turning: CycleTurning, effects: MassEffects, about: Array, asked: BalanceOptions,
     noise: Mapping[str, float] = NOTHING,
 ) -> BalanceResults:  # fmt: skip
-    """What was found, by orders of a coordinate at the cycle's rate; noise: below which force and moment are errors."""
-    scale = turning.scale
+    """What was found, by orders of a coordinate at the cycle's rate; noise: what these are off by besides."""
+    scale, nodes = turning.scale, effects.nodes
     least = {name: max(x, noise.get(name, 0.0)) for name, x in rounding_of(effects, scale).items()}
-    found = all_rows(effects, turning, least)
-    words = {name: in_words(rows) for name, rows in found.items()}
+    wanted = {name: WantedOrders(asked.orders, noise.get(name, 0.0)) for name in least}
+    found = all_rows(effects, turning, least, wanted)
+    words = {name: in_words(rows, endless=nodes.last_order is None) for name, rows in found.items()}
     if asked.orders is not None:
         found = {name: tuple(row for row in rows if is_asked(row.order, asked.orders)) for name, rows in found.items()}
     values = {
@@ -35,14 +39,19 @@ def told(
         "moment_orbital": -scale * effects.orbital, "moment_spin": -scale * effects.spin,
         "torque": scale * effects.half_slope[:, :, None],
     }  # fmt: skip
+    sums = {name: own.sum(axis=1) for name, own in values.items()}
+    kinds = {name: name.partition("_")[0] for name in values}
+    off = {name: nodes.errors(own) for name, own in sums.items()}
+    more = {name: noise.get(kind, 0.0) for name, kind in kinds.items()}
     return BalanceResults(
         title=spec.title, spec={"path": spec.path, "sha256": spec.sha256},
         coordinate=coordinate, turns=turning.turns, rate=turning.rate, samples=len(effects.angles), settled=True,
         about=about, place=asked.place, axis=turning.axis, effects=effects, orders=found,
         words=words,
-        mean={name: own.sum(axis=1).mean(axis=0) for name, own in values.items()},
-        residual={name: residual(own, effects.angles, least[name.partition("_")[0]]) for name, own in values.items()},
-        shown=shown(found) if asked.orders is None else asked.orders,
+        mean={name: np.einsum("n,nc->c", nodes.weights, own) for name, own in sums.items()},
+        mean_error={name: float(lengths(own.order)) + more[name] for name, own in off.items()},
+        residual=residuals(values, nodes, {name: least[kind] for name, kind in kinds.items()}, more),
+        shown=shown(found) if asked.orders is None else asked.orders, asked=asked.orders is not None,
     )  # fmt: skip
 
 
@@ -53,10 +62,18 @@ def is_asked(order: float, orders: Sequence[float]) -> bool:
 
 def shown(found: dict[str, tuple[OrderRow, ...]]) -> tuple[float, ...]:
     """The orders that a table shows: up to the last that is no small part of the largest of its quantity."""
-    last = 0.0
+    last, parts = 0.0, dict[float, float]()
     for rows in found.values():
         largest = max((row.size for row in rows), default=0.0)
         last = max([last, *(row.order for row in rows if row.size > IN_TABLE * largest)])
-    every = sorted({row.order for rows in found.values() for row in rows if row.order <= last})
+        for row in rows:
+            parts[row.order] = max(parts.get(row.order, 0.0), row.size / largest if largest > 0.0 else 0.0)
     some = {row.order for rows in found.values() for row in rows if row.size > 0.0}
-    return tuple(order for order in every if order == round(order) or order in some)[:MOST_ROWS]
+    every = [order for order in sorted(parts) if order <= last and (order == round(order) or order in some)]
+    return largest_of([(order, parts[order]) for order in every], MOST_ROWS)
+
+
+def largest_of(sizes: Sequence[tuple[float, float]], most: int) -> tuple[float, ...]:
+    """Of orders with their sizes so many of the largest, ascending; of equal ones the first."""
+    chosen = sorted(sizes, key=lambda own: (-own[1], own[0]))[:most] if len(sizes) > most else sizes
+    return tuple(sorted(order for order, _ in chosen))

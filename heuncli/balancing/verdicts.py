@@ -14,6 +14,7 @@ ALONE = 1e-9  # of the larger of two parts: the smaller is none
 FAINT = 1e-3  # of the largest order: smaller ones are summed up in words
 MOST_NAMED = 6
 SMALLER = "smaller ones"
+ENDLESS = ", fainter ones without end"
 LETTERS = ("x", "y", "z")
 
 
@@ -28,13 +29,14 @@ def verdict_of(left: float, own: float, largest: float, least: float = 0.0) -> V
     return "cancels" if left <= max(tolerances.CANCELS * own, rounding) else "remains"
 
 
-def in_words(rows: Sequence[OrderRow]) -> str:
-    """The orders that remain, and along what."""
+def in_words(rows: Sequence[OrderRow], *, endless: bool = False) -> str:
+    """The orders that remain, the largest of them, and along what; endless: whether there is no last one."""
     left = [row for row in rows if row.verdict == "remains" and row.order > 0.0]
     if not left:
         return "none" if not any(row.verdict == "cancels" for row in rows) else "all orders cancel"
     largest = max(row.size for row in left)
-    told = [row for row in left if row.size > FAINT * largest][:MOST_NAMED]
+    told = sorted(sorted(left, key=lambda row: -row.size)[:MOST_NAMED], key=lambda row: row.order)
+    told = [row for row in told if row.size > FAINT * largest]
     ways = {direction(row) for row in told}
     way = ways.pop() if len(ways) == 1 else ""
     names = [f"{row.order:g}" + (f" ({direction(row)})" if ways and direction(row) else "") for row in told]
@@ -44,7 +46,9 @@ def in_words(rows: Sequence[OrderRow]) -> str:
     begins = f"order{'s' if len(names) > 1 else ''} {words} remain{'' if len(names) > 1 else 's'}"
     begins += f", {way}" if way else ""
     last = max(row.order for row in left)
-    return f"{begins}; {SMALLER} up to {last:g}" if len(left) > len(told) else begins
+    if len(left) == len(told):
+        return begins
+    return f"{begins}; {SMALLER} up to {last:g}{ENDLESS if endless else ''}"
 
 
 def direction(row: OrderRow) -> str:

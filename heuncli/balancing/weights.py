@@ -15,6 +15,7 @@ from heuncli.balancing.cycle import Cycle, axis_of, turning
 from heuncli.balancing.effects import mass_effects
 from heuncli.balancing.results import Counterbalance, PlacedWeight
 from heuncli.balancing.rows import CycleTurning, all_rows, rounding_of
+from heuncli.balancing.sampled import sampled
 from heuncli.balancing.verdicts import in_words
 from heuncli.errors import Problem, SolveError
 from heuncli.mechanism.model import Mechanism
@@ -35,10 +36,10 @@ def counterbalanced(
     parts = {"force": (1.0, 0.0), "moment": (0.0, 1.0), "mix": (1.0, 1.0 / lever)}[what]
     found = least(cycle, places, about, *parts)
     heavier = applied(scene.mechanism, found.weights)
-    there = turning(replace(scene, mechanism=heavier), plan).at(len(cycle.angles))
+    there = sampled(turning(replace(scene, mechanism=heavier), plan), about)[0]
     effects, turns = mass_effects(there, about), CycleTurning(plan.turns, axis_of(cycle, plan.joint), plan.rate)
     rows = all_rows(effects, turns, rounding_of(effects, turns.scale))
-    before, after = cost(spec, scene, heavier, plan, about, len(cycle.angles))
+    before, after = cost(spec, scene, heavier, plan, about)
     return Counterbalance(
         weights=tuple(told(weight) for weight in found.weights),
         minimised=what, lever=lever if what == "mix" else None, several=found.several,

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from heuncli.balancing.asked import AskedWheel
 from heuncli.balancing.choice import CyclePlan
-from heuncli.balancing.cost import loaded
-from heuncli.balancing.flywheel import INTERVALS, flywheel, require_placed
+from heuncli.balancing.flywheel import flywheel, require_placed
+from heuncli.balancing.loaded import loaded
 from heuncli.balancing.results import BalanceResults, Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.records import replace
@@ -18,7 +18,8 @@ def with_wheel(
 ) -> BalanceResults:
     """The results with the flywheel that is asked for. Raises SolveError where there is none."""
     wheel = wheel_of(spec, scene, plan, asked)
-    return replace(found, flywheel=wheel, notes=(*found.notes, *notes(wheel)))
+    notes = (*found.notes, *notes_on(wheel), *wheel.notes)
+    return replace(found, flywheel=wheel, notes=tuple(dict.fromkeys(notes)))
 
 
 def wheel_of(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: AskedWheel) -> Flywheel:
@@ -33,11 +34,11 @@ def wheel_of(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: AskedWhee
         message = "how fast the machine runs in the mean is not known"
         raise SolveError(Problem("no-flywheel", message, hint="--rate 1500rpm, say"))
     require_placed(scene.mechanism)
-    cycle = loaded(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0, 2 * INTERVALS * plan.turns)
-    return flywheel(cycle, plan.joint, abs(plan.rate), asked.delta)
+    own = loaded(spec, scene, scene.mechanism, replace(plan, rate=1.0), 1.0)
+    return flywheel(own, plan.joint, abs(plan.rate), asked.delta)
 
 
-def notes(wheel: Flywheel) -> tuple[str, ...]:
+def notes_on(wheel: Flywheel) -> tuple[str, ...]:
     """What is to be told of it beside its numbers."""
     found = []
     if wheel.even:

@@ -16,7 +16,7 @@ def cycle_of(found: BalanceResults) -> str:
     """The cycle in words."""
     if found.period is not None:
         own = found.period
-        back = f"the period before differs by {own.off:.1g} of the largest"
+        back = f"the period before differs by {own.off:.1g} of the mean"
         return f"the last {own.seconds:.6g} s of the motion, {found.samples} instants; order k is k/T; {back}"
     turns = "one turn" if found.turns == 1 else "two turns"
     rate = f"at {found.rate:.6g} rad/s ({found.rate * RPM:.6g} rpm)" if found.rate is not None else AT_ONE

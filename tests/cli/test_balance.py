@@ -51,11 +51,11 @@ def test_json_keeps_to_the_contract(heun: Heun, crank: str) -> None:
     assert told.keys() >= {"mean", "harmonics", "residual", "per_rate", "counterweights"}
     assert told["harmonics"].keys() == {"force", "moment", "torque"}
     for row in told["harmonics"]["force"]:
-        assert row.keys() == {"order", "amplitude", "phase", "with", "against", "own", "verdict"}
+        assert row.keys() == {"order", "amplitude", "phase", "with", "against", "own", "verdict", "error"}
     for row in told["harmonics"]["moment"]:
         assert row.keys() >= {"orbital", "spin"} and row["orbital"].keys() == {"amplitude", "phase"}
     assert told["residual"].keys() == {"force", "moment", "moment_orbital", "moment_spin", "torque"}
-    assert told["residual"]["force"].keys() == {"rms", "peak", "at"}
+    assert told["residual"]["force"].keys() == {"rms", "peak", "at", "error"}
     assert len(told["per_rate"]["second"]["force"]) == len(told["per_rate"]["angle"]) == told["cycle"]["samples"]
     assert told["per_rate"]["angle"][0] == pytest.approx(1.0)
 

@@ -102,3 +102,34 @@ def test_the_engine_runs_as_a_run_has_it() -> None:
 def test_loads_that_the_angle_does_not_tell_are_refused(law: str, why: str) -> None:
     with pytest.raises(SolveError, match=why):
         balance_of(SHAFT.replace("LAW", law), rate=20.0, flywheel=AskedWheel("shaft", 0.01))
+
+
+@pytest.mark.parametrize("width", [0.3, 0.003, 1e-4, 1e-8])
+def test_a_punch_counts_in_full_however_short(width: float) -> None:
+    """300 J a turn from 1 rad on: ΔE = 300 (1 - b/2π), the mean -300/2π; order k is 300/π sin(kb/2)/(kb/2)."""
+    law = f"-{300.0 / width!r} if shaft.angle > 1 and shaft.angle < {1.0 + width!r} else 0"
+    told = balance_of(
+        SHAFT.replace("LAW", law), rate=200.0 * RPM, flywheel=AskedWheel("", 0.01), orders=(1.0, 30.0, 5000.0)
+    )
+    own = told.flywheel
+    assert own is not None
+    b = (1.0 + width) - 1.0
+    work = 300.0 / width * b
+    assert told.mean["load"] == pytest.approx(-work / (2.0 * math.pi), abs=told.mean_error["load"])
+    assert own.energy == pytest.approx(work * (1.0 - b / (2.0 * math.pi)), abs=own.error["energy"])
+    assert own.textbook == pytest.approx(own.energy / (0.01 * (200.0 * RPM) ** 2) - 50.0, rel=1e-12)
+    for row in told.orders["load"]:
+        half = 0.5 * row.order * b
+        assert row.amplitude[0] == pytest.approx(work / math.pi * abs(math.sin(half)) / half, abs=row.error)
+        assert row.error <= 1e-2 * work * max(1.0, 1e-8 / width)
+
+
+def test_loads_have_orders_as_high_as_they_go() -> None:
+    """5 cos 30φ + 10 abs(sin φ): order k of the latter is 40/π/(k² - 1), from 160 on less than 4.99e-4."""
+    told = balance_of(SHAFT.replace("LAW", "5*cos(30*shaft.angle) + 10*abs(sin(shaft.angle))"), rate=20.0)
+    rows = {row.order: row for row in told.orders["load"]}
+    for k in range(2, 160, 2):
+        wanted = 40.0 / math.pi / (k * k - 1.0)
+        assert rows[float(k)].amplitude[0] == pytest.approx(abs(5.0 * (k == 30) - wanted), abs=rows[float(k)].error)
+        assert rows[float(k)].error < 1e-9
+    assert max(rows) == 158.0

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from heuncli.balancing.asked import BalanceOptions
 from heuncli.balancing.study import balance
 from heuncli.spec.load import load
 from tests.shared.cycling import RPM, Cylinder, amplitude, balance_of, engine, row_of
@@ -157,3 +158,37 @@ def test_schlicks_angles_and_masses() -> None:
         orders = balance(load(str(SPECS / "schlick.yaml"), overrides=given, checking=False))
         rows = [row_of(orders, quantity, order) for quantity, order in (("force", 1), ("force", 2), ("moment", 1))]
         assert [row.verdict for row in rows if row is not None] == ["cancels"] * 3
+
+
+@pytest.mark.parametrize("begin", ["0", "60 deg", "1.2345", "-2"])
+def test_the_largest_is_searched_between_the_angles(begin: str) -> None:
+    """At the dead centre (m_crank/2 + m_rod/2 ...) adds up to 3433 1/3 N, wherever the cycle begins."""
+    spec = load(str(SPECS / "slider_crank.yaml"), overrides={"phi": begin}, checking=False)
+    force = balance(spec).residual["force"]
+    assert force.peak == pytest.approx(10300.0 / 3.0, rel=1e-12) and abs(force.peak - 10300.0 / 3.0) <= force.error
+    assert math.remainder(force.at, 2.0 * math.pi) == pytest.approx(0.0, abs=1e-5)
+
+
+DISC = """
+heun: 1
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{disc: {{mass: 2, center: [0.01, 0, 0], inertia: [0.1, 0.1, 0.2], points: {{o: [0, 0, 0]}}}}}}
+joints: {{p: {{type: pin, from: ground.O, to: disc.o, axis: [0, 0, {axis}]}}}}
+drives: {{m: {{joint: p, rate: {rate}}}}}
+"""
+
+
+@pytest.mark.parametrize(("axis", "rate"), [(1, 100.0), (1, -100.0), (-1, 100.0), (-1, -100.0)])
+def test_what_stands_still_in_the_disc_turns_with_it_whichever_way_it_turns(axis: int, rate: float) -> None:
+    found = balance_of(DISC.format(axis=axis, rate=rate))
+    row = row_of(found, "force", 1.0)
+    assert row is not None and row.with_turn == pytest.approx(2.0 * 0.01 * 100.0**2, rel=1e-12) and row.against == 0.0
+    assert found.words["force"] == "order 1 alone remains, with the turn"
+
+
+@pytest.mark.parametrize("rate", [100.0, -100.0])
+def test_the_way_of_orders_hangs_on_no_rate(rate: float) -> None:
+    """Of a V engine on one throw order 1 turns with the shaft, at 90° all of it."""
+    found = balance(load(str(SPECS / "v_twin.yaml"), checking=False), BalanceOptions(rate=rate))
+    first = row_of(found, "force", 1.0)
+    assert first is not None and first.with_turn is not None and first.with_turn > 0.0 and first.against == 0.0

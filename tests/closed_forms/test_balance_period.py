@@ -110,3 +110,35 @@ def test_the_command(heun: Heun, tmp_path: Path) -> None:
     both = heun(*words, "--cycle", "A", "--flywheel", "1%")
     assert both.returncode == 2 and "--period and --cycle" in both.stderr and "--period and --flywheel" in both.stderr
     assert heun("balance", str(spec), "--period", "0").returncode == 2
+
+
+SQUARE = """
+heun: 1
+parameters: {{T: 0.2, d: {duty}, F: 100, m: 2 kg}}
+ground: {{points: {{O: [0, 0, 0]}}}}
+bodies: {{a: {{mass: m, center: [0, 0, 0], inertia: [1, 1, 1], points: {{o: [0, 0, 0]}}}}}}
+joints:
+  s: {{type: slide, from: ground.O, to: a.o, axis: [1, 0, 0], initial: {{travel: 0, speed: "-F*(1-d)*d*T/2/m"}}}}
+forces:
+  f: {{type: torque, joint: s, value: "F*(1-d) if t - T*(step(t-T)+step(t-2*T)+step(t-3*T)) < d*T else -F*d"}}
+analysis: {{duration: {duration}, samples: 51}}
+"""
+
+
+@pytest.mark.parametrize(("duty", "duration"), [(0.3, 0.4517), (0.3, 0.5), (0.3, 0.4), (1e-4, 0.45)])
+def test_jumps_are_met_and_not_aliased(duty: float, duration: float) -> None:
+    """A square wave has orders 2F/kπ |sin k d π|, also where a period begins or ends with a jump."""
+    found = balance(
+        load("scene.yaml", SQUARE.format(duty=duty, duration=duration)),
+        BalanceOptions(period=0.2, orders=(1.0, 2.0, 3.0, 10.0, 100.0, 2001.0)),
+    )
+    assert len(found.orders["force"]) == 6
+    for row in found.orders["force"]:
+        wanted = 200.0 / row.order / math.pi * abs(math.sin(row.order * duty * math.pi))
+        assert abs(row.amplitude[0] - wanted) <= row.error < 1e-7
+        phase = row.phase[0] - 2.0 * math.pi * row.order * (duty / 2.0)  # masses push back: half a turn, or none
+        if row.amplitude[0] > 1e-6:
+            assert abs(math.sin(phase)) < 1e-6 / row.amplitude[0] + 1e-9
+    assert abs(found.mean["force"][0]) <= found.mean_error["force"] < 1e-7
+    assert found.residual["force"].peak == pytest.approx(100.0 * max(duty, 1.0 - duty), rel=1e-9)
+    assert found.period is not None and found.period.off < 1e-9

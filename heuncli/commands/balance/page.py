@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.balancing.results import BalanceResults, Counterbalance, OrderRow, OverCycle, Period
+from heuncli.balancing.told import largest_of
 from heuncli.balancing.words import cycle_of, place_of, unit_of
 from heuncli.commands.balance.letters import draw
 from heuncli.commands.balance.remedies_page import remedies
@@ -26,9 +27,8 @@ FORCE = "FORCE  ON the foundation, world axes; order k is amplitude · cos(kφ -
 MOMENT = "MOMENT  ON the foundation, about {}; orbital and spin: what the two make of it in its phase"
 TORQUE = "TORQUE  that inertia alone takes of the drive, ½ dε/dφ ω²"
 LOAD = "LOADS  the torque that loads and weight put on the shaft: their power by its rate"
-SURE_OF_LOADS = 1e-4  # of the largest order: laws with kinks and jumps are seen at samples
 LEAST_SHOWN, MOST_LOADS = 1e-3, 12  # of the largest order; of how many
-RESIDUAL = "OVER THE CYCLE  root of the mean square, largest, and where"
+RESIDUAL = "OVER THE CYCLE  root of the mean square, largest, what both are known within, and where the largest is"
 JOINTS = "joints."
 MOSTLY_GONE = 0.5  # of the bodies' own: an order of which less is left is worth a remark
 SIGNS = "minus the mass_effect of heun run, which is + sum m xdd"
@@ -37,7 +37,7 @@ CSV_COLUMNS = "kind,order,quantity,component,unit,value"
 
 def heading(found: BalanceResults) -> list[tuple[str, str]]:
     """Label and text of the lines above the tables."""
-    many = "" if found.settled else "; the highest orders are not settled: a law bends on the way"
+    many = "" if found.settled else "; it varies too much to be followed to its digits: see the errors"
     return [
         ("heun", f"{VERSION}  {found.title}"),
         ("balance", f"{cycle_of(found)}{many}"),
@@ -73,8 +73,9 @@ def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable
         return TextTable(heading, notes=("of no order",))
     unit = unit_of(found, quantity)
     columns, cells = [TextColumn("order")], [[f"{row.order:g}" for row in rows]]
-    sure = SURE_OF_LOADS if quantity == "load" else WRITTEN
     scale = max(max(row.size, *(float(part.max()) for part, _ in (row.parts or {}).values()), 0.0) for row in rows)
+    error = max(row.error for row in rows)
+    sure = max(WRITTEN, error / scale) if scale > 0.0 else WRITTEN
     for k in components(rows):
         letter = "" if quantity in ("torque", "load") else f"{quantity[0].upper()}{LETTERS[k]}"
         columns += [TextColumn(head(letter or quantity, unit), vector=letter), TextColumn("phase°", vector=letter)]
@@ -83,26 +84,35 @@ def order_table(found: BalanceResults, quantity: str, heading: str) -> TextTable
         if quantity == "moment":
             for part in ("orbital", "spin"):
                 columns.append(TextColumn(part, vector=letter))
-                cells.append(numbers([in_phase(row, part, k) for row in rows], scale))
+                cells.append(numbers([in_phase(row, part, k) for row in rows], scale, sure))
     if any(row.with_turn or row.against for row in rows):
         columns += [TextColumn("with turn", vector="turn"), TextColumn("against", vector="turn")]
         cells += [
-            numbers([row.with_turn or 0.0 for row in rows], scale),
-            numbers([row.against or 0.0 for row in rows], scale),
+            numbers([row.with_turn or 0.0 for row in rows], scale, sure),
+            numbers([row.against or 0.0 for row in rows], scale, sure),
         ]
     columns.append(TextColumn("", "left"))
     cells.append([remark(row, quantity) for row in rows])
-    return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)))
+    notes = (f"each within {error:.1g} {unit}",) if any(row.size for row in rows) else ()
+    return TextTable(heading, tuple(columns), tuple(zip(*cells, strict=True)), notes)
 
 
 def load_table(found: BalanceResults) -> TextTable:
-    """The orders of what loads and weight put on the shaft, the first of them, and their mean."""
+    """The orders of what loads and weight put on the shaft, the largest of them or those asked for, and their mean."""
     rows = found.orders["load"]
     largest = max((row.size for row in rows), default=0.0)
-    told = tuple(row.order for row in rows if row.size > LEAST_SHOWN * largest)[:MOST_LOADS]
+    counts = [row for row in rows if row.size > LEAST_SHOWN * largest]
+    told = found.shown if found.asked else largest_of([(row.order, row.size) for row in counts], MOST_LOADS)
     table = order_table(replace(found, shown=told), "load", LOAD)
-    how = style(max(largest, abs(found.mean["load"])), SURE_OF_LOADS * largest)
-    return table._replace(notes=(*table.notes, f"mean: {how.write(found.mean['load'])} N·m"))
+    mean, error = found.mean["load"], found.mean_error["load"]
+    how = style(max(largest, abs(mean)), max(error, WRITTEN * largest))
+    notes = [f"mean: {how.write(mean)} N·m, within {error:.1g} N·m"]
+    left = [row.order for row in counts if row.order not in told]
+    if left and not found.asked:
+        notes.append(
+            f"{len(left)} smaller ones up to order {left[-1]:g} are left out: --orders shows any, JSON has all"
+        )
+    return table._replace(notes=(*table.notes, *notes))
 
 
 def components(rows: Sequence[OrderRow]) -> list[int]:
@@ -148,9 +158,13 @@ def residual_table(found: BalanceResults) -> TextTable:
     for name in ("force", "moment", "torque"):
         if name in found.residual:
             own = found.residual[name]
-            rms, peak = numbers([own.rms, own.peak], own.peak)
-            rows.append((f"{name} [{unit_of(found, name)}]", rms, peak, where(found, own.at) if own.peak else ""))
-    columns = TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("at", "left")
+            sure = max(WRITTEN, own.error / own.peak) if own.peak else WRITTEN
+            rms, peak = numbers([own.rms, own.peak], own.peak, sure)
+            place, within = (where(found, own.at), f"{own.error:.1g}") if own.peak else ("", "")
+            rows.append((f"{name} [{unit_of(found, name)}]", rms, peak, within, place))
+    columns = (
+        TextColumn("", "left"), TextColumn("rms"), TextColumn("peak"), TextColumn("within"), TextColumn("at", "left"),
+    )  # fmt: skip
     return TextTable(RESIDUAL, columns, tuple(rows))
 
 
@@ -171,7 +185,7 @@ def block(found: BalanceResults) -> dict[str, Any]:
             "settled": found.settled, **period_block(found.period),
         },
         "about": found.about, "axis": found.axis, "words": dict(found.words), "notes": list(found.notes),
-        "mean": dict(found.mean),
+        "mean": dict(found.mean), "mean_error": dict(found.mean_error),
         "harmonics": {name: [row.block() for row in rows] for name, rows in found.orders.items()},
         "residual": {name: residual.block() for name, residual in found.residual.items()},
     }  # fmt: skip
@@ -244,7 +258,10 @@ def to_csv(found: BalanceResults) -> str:
                 lines.append(f"{kind},{row.order:g},{quantity},{component},{of or unit},{value!r}")
     for kind, own in found.residual.items():
         unit = unit_of(found, kind.partition("_")[0])
-        lines += [f"{kind},,{name},,{unit},{value!r}" for name, value in (("rms", own.rms), ("peak", own.peak))]
+        lines += [
+            f"{kind},,{name},,{unit},{value!r}"
+            for name, value in (("rms", own.rms), ("peak", own.peak), ("error", own.error))
+        ]
         lines.append(f"{kind},,at,,rad,{own.at!r}")
     return "\n".join(lines) + "\n"
 
@@ -258,6 +275,6 @@ def of_order(row: OrderRow) -> Iterator[tuple[str, str, str, float]]:
         for letter, a, p in zip(letters, amplitude.tolist(), phase.tolist(), strict=True):
             yield f"{name}amplitude", letter, "", a
             yield f"{name}phase", letter, "rad", p
-    for name, value in (("with", row.with_turn), ("against", row.against)):
+    for name, value in (("with", row.with_turn), ("against", row.against), ("error", row.error)):
         if value is not None:
             yield name, "", "", value

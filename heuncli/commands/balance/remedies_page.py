@@ -76,7 +76,8 @@ def cost_table(found: Counterbalance, all_found: BalanceResults) -> TextTable:
     for name, before in found.before.items():
         after = found.after[name]
         largest = max((x for x in (before.peak, after.peak) if x is not None), default=0.0)
-        cells = [number(value, largest) for value in (before.rms, after.rms, before.peak, after.peak)]
+        off = max(before.error or 0.0, after.error or 0.0)
+        cells = [number(value, largest, off) for value in (before.rms, after.rms, before.peak, after.peak)]
         rows.append((labels.get(name, f"{name} [N]"), *cells, factor(before, after)))
     notes = [NO_RATE] if all_found.rate is None else []
     notes += [LEFT_OPEN] if any(own.rms is None for own in found.before.values()) else []
@@ -91,32 +92,44 @@ def factor(before: OverCycle, after: OverCycle) -> str:
 
 
 def wheel_table(wheel: Flywheel) -> TextTable:
-    """The flywheel, beside the textbook's."""
+    """The flywheel, beside the textbook's; each number with what it is known within."""
+    off = wheel.error
     rows = (
         (
-            "added",
-            f"{wheel.added:.9g} kg·m²",
-            f"ΔE/(δ ω²) less what turns evenly, the textbook's: {wheel.textbook:.9g}",
+            "added", f"{sure(wheel.added, off['added'])} kg·m²", f"{off['added']:.1g}",
+            f"ΔE/(δ ω²) less what turns evenly, the textbook's: {sure(wheel.textbook, off['textbook'])}",
         ),
-        ("own", f"{wheel.own:.6g} kg·m²", "the machine's reduced inertia, mean over the cycle"),
-        ("ΔE", f"{wheel.energy:.6g} J", "of work that loads and inertia give and take at an even rate"),
-        ("unevenness", f"{wheel.present:.6g}", "as it is, without the wheel"),
-        ("mean", f"{wheel.mean_rate * RPM:.9g} rpm", "angle of the cycle over its time"),
-        (
-            "start",
-            f"{wheel.start * RPM:.9g} rpm",
-            "the rate at the start of the cycle that has this mean, with the wheel",
-        ),
-        ("slowest", f"{wheel.slowest * RPM:.9g} rpm", "with the wheel"),
-        ("fastest", f"{wheel.fastest * RPM:.9g} rpm", "with the wheel"),
-    )
-    columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("", "left")
+        ("own", f"{wheel.own:.6g} kg·m²", f"{off['own']:.1g}", "the machine's reduced inertia, mean over the cycle"),
+        ("ΔE", f"{wheel.energy:.6g} J", f"{off['energy']:.1g}",
+         "of work that loads and inertia give and take at an even rate"),
+        ("unevenness", f"{wheel.present:.6g}", f"{off['present']:.1g}", "as it is, without the wheel"),
+        ("mean", f"{wheel.mean_rate * RPM:.9g} rpm", "", "angle of the cycle over its time"),
+        ("start", *speed(wheel.start, off["start"]),
+         "the rate at the start of the cycle that has this mean, with the wheel"),
+        ("slowest", *speed(wheel.slowest, off["slowest"]), "with the wheel"),
+        ("fastest", *speed(wheel.fastest, off["fastest"]), "with the wheel"),
+    )  # fmt: skip
+    columns = TextColumn("", "left"), TextColumn("", "left"), TextColumn("within"), TextColumn("", "left")
     return TextTable(FLYWHEEL.format(wheel.joint, wheel.delta), columns, rows)
 
 
-def number(value: float | None, largest: float) -> str:
-    """A number of a family, or that it is open."""
-    return OPEN if value is None else style(largest, WRITTEN * largest, WRITTEN * largest).write(value)
+def sure(value: float, error: float) -> str:
+    """A number to nine digits, or to as many as its error leaves."""
+    digits = 9
+    if error > 0.0 and value != 0.0:
+        digits = min(digits, max(1, math.floor(math.log10(abs(value) / error)) + 1)) if error < abs(value) else 1
+    return f"{value:.{digits}g}"
+
+
+def speed(rate: float, error: float) -> tuple[str, str]:
+    """A rate and its error, in rpm."""
+    return f"{sure(rate * RPM, error * RPM)} rpm", f"{error * RPM:.1g}"
+
+
+def number(value: float | None, largest: float, error: float) -> str:
+    """A number of a family that is known within an error, or that it is open."""
+    off = max(WRITTEN * largest, error)
+    return OPEN if value is None else style(largest, off, off).write(value)
 
 
 def numbers(values: Sequence[float]) -> list[str]:
