@@ -51,7 +51,7 @@ def _moved_extremes(path: str, pair: tuple[KeptNumber, KeptNumber]) -> Iterator[
             continue
         allowed = max(errors) + 4.0 * tolerances.EPS * max(map(abs, times))
         if not abs(times[1] - times[0]) <= allowed:
-            yield Change(path, f"instant of the {word}", "s", *times, allowed)
+            yield Change(path, f"instant of the {word}", "s", times[0], times[1], allowed)
 
 
 def _tenths(

@@ -83,7 +83,7 @@ def instants_of_tenths(even: Array) -> Array:
 def sum_tenths(values: Array, near_jump: Mask) -> CourseSums:
     """The means and the mean square of a quantity (10, INSTANTS); near_jump: instants so near to a jump that its side
     is not certain."""
-    known = np.isfinite(values).all(axis=1) & ~near_jump.any(axis=1)
+    known: Mask = np.asarray(np.isfinite(values).all(axis=1) & ~near_jump.any(axis=1))
     means = values.mean(axis=1)
     tenths: list[Value] = [float(mean) if sure else UNKNOWN for mean, sure in zip(means, known, strict=True)]
     return CourseSums(tenths, float(np.mean(values**2)) if known.all() else None)

@@ -115,7 +115,7 @@ def _jumps(study: Study, told: Told) -> UncertainJumps:
     motion = told.results.accuracy.get("estimate", {}).get("motion") or 0.0
     errors = np.full(len(jumps), max(SLOW * motion, 2.0 * tolerances.EPS) * span)
     for blow in told.results.impulses:
-        k = np.clip(np.searchsorted(jumps, float(blow["time"])), 0, max(len(jumps) - 1, 0))
+        k = min(int(np.searchsorted(jumps, float(blow["time"]))), max(len(jumps) - 1, 0))
         for own in {max(k - 1, 0), k} if len(jumps) else ():
             errors[own] = max(errors[own], blow_error(blow, told))
     return UncertainJumps(jumps, errors)

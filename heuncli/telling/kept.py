@@ -72,8 +72,9 @@ class KeptNumber(KeptPart):
         """The values that decide, by their words; those at even instants by their number."""
         if self.constant is not None:
             return dict.fromkeys((*ENDS, *BOUNDS, *range(EVEN)), self.constant)
-        named = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
-        return {word: value for word, value in (*named.items(), *enumerate(self.even)) if value is not None}
+        named: dict[str | int, Value | None] = {word: getattr(self, word) for word in (*ENDS, *BOUNDS)}
+        named |= dict(enumerate(self.even))
+        return {word: value for word, value in named.items() if value is not None}
 
 
 ENDS, BOUNDS = ("first", "last"), ("least", "greatest")
