@@ -18,13 +18,16 @@ independently; of a plan that fills the space the repetitions of the plan, which
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from heuncli.named_tuples import NamedTuple
 from heuncli.results import Array
 from heuncli.variants.sampling import SURE, Estimated
 
+Places = npt.NDArray[np.signedinteger[Any]]
 LEAST_COUNT = 8  # of samples of which indices are told
 LEAST_BOUNDED = 64  # of samples whose indices have intervals
 MORE_SURE = 0.03  # of the share p at that many samples; it falls with the root of their number
@@ -73,7 +76,7 @@ def _drawings(count: int) -> Array:
     return found
 
 
-def _ratio(m: Array, v: Array, units: Array, weights: Array | None) -> Estimated:
+def _ratio(m: Array, v: Array, units: Places, weights: Array | None) -> Estimated:
     """The ratio of two means, with its interval; weights: of units that are drawn again, None: without an interval."""
     R = float(m.mean()) / float(v.mean())
     if weights is None:
