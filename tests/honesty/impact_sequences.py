@@ -250,7 +250,7 @@ def laws(run: Study, own: Row, wanted: Ended) -> str:
     told = run.results.model.get("contacts", ())
     if len(loaded) > 1 and not (any("impacts: sequential" in one for one in told) and run.results.warnings):
         return "not said"
-    if len(loaded) < 2 and any("share" in one for one in told):
+    if sum(z > 0.0 for z in wanted.impulses) < 2 and any("share" in one for one in told):
         return f"said of one contact: {told}"
     return ""
 

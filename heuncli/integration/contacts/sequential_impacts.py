@@ -79,7 +79,7 @@ class ContactRates:
 
     def rounding(self, i: int) -> float:
         """What rounding makes of a rate."""
-        return max(tolerances.SUM_ROUNDING * self.fastest[i], tolerances.EPS * self.moved[i])
+        return float(max(tolerances.SUM_ROUNDING * self.fastest[i], tolerances.EPS * self.moved[i]))
 
     def closing(self, movable: list[int]) -> list[int]:
         """Those that close."""
