@@ -114,8 +114,6 @@ def struck_in_sequence(touch: Touching, A: Array, moves: Mask, pressed: Array, p
     """The same, of contacts that are struck one after another (sequential_impacts.py)."""
     e = np.where(plastic, 0.0, touch.restitution)
     noise = touch.noise + tolerances.CONTACT_RATE * np.abs(pressed)
-    fastest = np.abs((touch.rate + pressed) * touch.length).max()  # given blows reach contacts far off by rounding alone
-    noise = np.maximum(noise, tolerances.SUM_ROUNDING * fastest / touch.length)
 
     def solve_impulses(v: Array, own: Indices, e: Array, noise: Array) -> tuple[Array, Mask]:
         part = A[np.ix_(own, own)]
