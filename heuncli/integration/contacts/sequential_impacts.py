@@ -74,12 +74,14 @@ class ContactRates:
         self.widest = self.gap.copy()
         self.total, self.moved = [0.0] * len(start), [0.0] * len(start)
         self.fastest = [abs(v) for v in self.v]
+        # contacts far off feel blows and impacts by rounding alone
+        self.least: list[float] = (tolerances.SUM_ROUNDING * np.abs(start * lengths).max() / lengths).tolist()
         self.answers: list[list[float]] = A.T.tolist()
         self.places = range(len(start))
 
     def rounding(self, i: int) -> float:
         """What rounding makes of a rate."""
-        return float(max(tolerances.SUM_ROUNDING * self.fastest[i], tolerances.EPS * self.moved[i]))
+        return float(max(self.least[i], tolerances.SUM_ROUNDING * self.fastest[i], tolerances.EPS * self.moved[i]))
 
     def closing(self, movable: list[int]) -> list[int]:
         """Those that close."""
