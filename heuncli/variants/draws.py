@@ -99,9 +99,9 @@ def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int, repetit
                 points[:, copy * d + place] = _stream(one.name, seed, copy, samples)
     if together:
         columns = [copy * d + place for copy in range(copies) for place in together]
-        for one in range(min(repetitions, samples)):
-            own = np.arange(one, samples, repetitions)
-            points[np.ix_(own, columns)] = _joint(law, len(columns), len(own), (seed, one) if repetitions > 1 else seed)
+        for plan in range(min(repetitions, samples)):
+            own = np.arange(plan, samples, repetitions)
+            points[np.ix_(own, columns)] = _joint(law, len(columns), len(own), (seed, plan) if repetitions > 1 else seed)
     return points
 
 

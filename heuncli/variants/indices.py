@@ -43,7 +43,7 @@ class SobolIndices(NamedTuple):
     total: Estimated
 
 
-def sobol_indices(rows: Array, repetitions: Array | None = None) -> tuple[SobolIndices, ...] | None:
+def sobol_indices(rows: Array, repetitions: Places | None = None) -> tuple[SobolIndices, ...] | None:
     """The indices of each parameter.
 
     rows (n, d + 2): f_A, f_B and the d exchanged ones of each sample; repetitions (n,): which repetition of its plan a

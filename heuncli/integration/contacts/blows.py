@@ -54,7 +54,7 @@ class GivenBlow:
         if not 1 < count <= 2 * MOST_EQUAL:
             return self.after
         instants = np.arange(count) + np.array(math.nextafter(self.before, math.inf)).view(np.int64)
-        return min(instants.view(np.float64).tolist(), key=lambda t: len(repr(t)))
+        return float(min(instants.view(np.float64).tolist(), key=lambda t: len(repr(t))))
 
     def is_due(self, t: float) -> bool:
         """Whether a run that goes on from an instant t [s] has it behind itself."""
