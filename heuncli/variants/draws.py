@@ -101,7 +101,9 @@ def _points(laws: Sequence[Drawn], samples: int, seed: int, copies: int, repetit
         columns = [copy * d + place for copy in range(copies) for place in together]
         for plan in range(min(repetitions, samples)):
             own = np.arange(plan, samples, repetitions)
-            points[own[:, None], columns] = _joint(law, len(columns), len(own), (seed, plan) if repetitions > 1 else seed)
+            points[own[:, None], columns] = _joint(
+                law, len(columns), len(own), (seed, plan) if repetitions > 1 else seed
+            )
     return points
 
 
