@@ -15,7 +15,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.balancing.choice import CyclePlan
 from heuncli.balancing.followed import FollowedRun
-from heuncli.balancing.nodes import EvenNodes, Nodes, PieceNodes
+from heuncli.balancing.nodes import CycleNodes, EvenNodes, PieceNodes
 from heuncli.errors import LimitError, Problem, SolveError
 from heuncli.expressions.grammar import Scope, compile_expression
 from heuncli.integration.determined_motion import determined
@@ -61,7 +61,7 @@ class FollowedScene:
         require_closed(self.scene, there, self.turns)
         return own
 
-    def at(self, nodes: Nodes) -> Cycle:
+    def at(self, nodes: CycleNodes) -> Cycle:
         """The cycle at the angles of nodes."""
         if isinstance(nodes, EvenNodes):
             order = np.arange(nodes.count) if self.rate > 0.0 else (-np.arange(nodes.count)) % nodes.count
@@ -97,7 +97,7 @@ class Cycle:
     """A scene of a size [m] at the nodes of a cycle, moved at unit rate; behind it as at first."""
 
     mechanism: Mechanism
-    nodes: Nodes
+    nodes: CycleNodes
     states: BodyStates
     size: float
 

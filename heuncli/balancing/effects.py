@@ -14,7 +14,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli.balancing.cycle import Cycle
-from heuncli.balancing.nodes import Nodes
+from heuncli.balancing.nodes import CycleNodes
 from heuncli.kinetostatics.foundation import inertia_loads
 from heuncli.kinetostatics.reactions import in_plane
 from heuncli.records import record
@@ -30,7 +30,7 @@ class MassEffects:
     inertia [kg m2] and of ½ dε/dφ. terms: what force, moment and torque are sums of, whose rounding is none of theirs.
     """
 
-    nodes: Nodes
+    nodes: CycleNodes
     force: Array
     orbital: Array
     spin: Array

@@ -19,7 +19,7 @@ from heuncli.balancing.cycle import Cycle
 from heuncli.balancing.effects import mass_effects
 from heuncli.balancing.legendre import polynomials
 from heuncli.balancing.load_torque import rounding_in, torques
-from heuncli.balancing.loaded import LoadedScene, Numbers
+from heuncli.balancing.loaded import CycleNumbers, LoadedScene
 from heuncli.balancing.results import Flywheel
 from heuncli.errors import Problem, SolveError
 from heuncli.expressions.programs import Expression
@@ -211,7 +211,7 @@ def errors_of(
     }  # fmt: skip
 
 
-def of_wheel(scene: LoadedScene) -> Numbers:
+def of_wheel(scene: LoadedScene) -> CycleNumbers:
     """The power of loads and weight, the bodies' reduced inertia and ½ of what it changes by, over the cycle."""
     mechanism, size = scene.setup.scene.mechanism, scene.setup.scene.layout.size
 
@@ -226,7 +226,7 @@ def of_wheel(scene: LoadedScene) -> Numbers:
     return scene.numbers(columns, parts, [rounding_in(first), of_inertia, of_inertia])
 
 
-def course_of(numbers: Numbers, bodies: int) -> tuple[WorkCourse, float, WorkErrors]:
+def course_of(numbers: CycleNumbers, bodies: int) -> tuple[WorkCourse, float, WorkErrors]:
     """The course of a cycle, the even torque [N m] that closes it where that is no matter of digits, and its errors."""
     nodes, values = numbers.nodes, numbers.values
     eps_of, slopes_of = values[:, -2 * bodies : -bodies], values[:, -bodies:]

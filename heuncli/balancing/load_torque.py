@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from heuncli.balancing.choice import CyclePlan
-from heuncli.balancing.loaded import LoadedScene, Numbers, loaded
+from heuncli.balancing.loaded import CycleNumbers, LoadedScene, loaded
 from heuncli.balancing.results import OrderRow
 from heuncli.balancing.rows import CycleTurning, lengths, order_rows
 from heuncli.balancing.wanted import MOST_ORDERS, WantedOrders, left_beyond
@@ -63,7 +63,7 @@ def load_torque(spec: Spec, scene: PreparedScene, plan: CyclePlan, asked: tuple[
     return LoadTorque(rows, mean, off, notes)
 
 
-def torques_of(scene: LoadedScene) -> Numbers:
+def torques_of(scene: LoadedScene) -> CycleNumbers:
     """The power of each load, and of the weight, over the cycle (n, loads + 1) [W]."""
     first = scene.at_first()
     return scene.numbers(torques, [torques(first).shape[1]], [rounding_in(first)])

@@ -10,7 +10,7 @@ from heuncli.balancing.choice import CyclePlan
 from heuncli.balancing.cycle import driven_mechanism, require_determined, still
 from heuncli.balancing.followed import FollowedRun
 from heuncli.balancing.nodes import PieceNodes
-from heuncli.balancing.resolved import Resolver, scales_of
+from heuncli.balancing.resolved import CycleResolver, scales_of
 from heuncli.balancing.unseen import laws_of_angle, suspects
 from heuncli.expressions.programs import Expression
 from heuncli.integration.methods.followed import FOLLOWED
@@ -31,7 +31,7 @@ FEW = 8
 MOST_ROUNDS = 24  # of looks for what was not seen; each finds one in every piece
 
 
-class Numbers(NamedTuple):
+class CycleNumbers(NamedTuple):
     """Numbers over a cycle, (n, columns), at the nodes of its pieces; notes: what is not known to have been seen."""
 
     nodes: PieceNodes
@@ -56,13 +56,15 @@ class LoadedScene:
         """It at a few even places, by which it is told how many numbers there are, and what their terms are."""
         return self.at(self.followed.length * np.arange(FEW) / FEW)
 
-    def numbers(self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]) -> Numbers:
+    def numbers(
+        self, columns: Callable[[Recovery], Array], parts: Sequence[int], rounding: Sequence[float]
+    ) -> CycleNumbers:
         """Columns over the cycle, on as many pieces as tell them.
 
         parts: so many side by side that are of one kind; rounding: of each kind what of its numbers is that.
         """
         run, mechanism = self.followed, self.setup.scene.mechanism
-        resolver = Resolver(lambda x: columns(self.at(x)), run.cycle, scales_of(parts, rounding))
+        resolver = CycleResolver(lambda x: columns(self.at(x)), run.cycle, scales_of(parts, rounding))
         resolver.resolve(run.breaks)
         found = resolver.probed(np.union1d(run.short_steps(SHORT * run.length / run.turns), run.given_in_time()))
         values = [value for load in mechanism.loads for value in load.values]
@@ -85,7 +87,7 @@ class LoadedScene:
             notes.append(f"in {steps} bounds could not decide what loads do: shorter events may be missing")
         if not found.settled:
             notes.append("loads vary too much to be followed to their digits: what is told errs by as much as it says")
-        return Numbers(found.nodes, found.values, tuple(dict.fromkeys(notes)), found.settled and not notes)
+        return CycleNumbers(found.nodes, found.values, tuple(dict.fromkeys(notes)), found.settled and not notes)
 
 
 def has_others(values: Sequence[Expression], joint: str) -> bool:

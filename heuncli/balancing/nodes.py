@@ -36,7 +36,7 @@ class NodeErrors(NamedTuple):
     value: Array
 
 
-class Nodes(Protocol):
+class CycleNodes(Protocol):
     """Places of a cycle of so many turns that begins at an angle [rad]; a place x runs from 0 to the cycle's length."""
 
     @property

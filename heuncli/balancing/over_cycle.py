@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from heuncli import tolerances
-from heuncli.balancing.nodes import Course, Nodes
+from heuncli.balancing.nodes import Course, CycleNodes
 from heuncli.balancing.results import Residual
 from heuncli.records import replace
 from heuncli.results import Array
@@ -18,7 +18,7 @@ HIGHEST = (1.0,)
 
 
 def residuals(
-    kinds: Mapping[str, Array], nodes: Nodes, least: Mapping[str, float], noise: Mapping[str, float]
+    kinds: Mapping[str, Array], nodes: CycleNodes, least: Mapping[str, float], noise: Mapping[str, float]
 ) -> dict[str, Residual]:
     """Of each kind the sum over the bodies of values (n, bodies, c).
 
@@ -36,7 +36,7 @@ def residuals(
     return found
 
 
-def of_vectors(kinds: Mapping[str, Array], nodes: Nodes) -> dict[str, Residual]:
+def of_vectors(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:
     """Of the magnitudes of vectors (n, c) of some kinds."""
     values = np.concatenate([*kinds.values()], axis=1)
     course, ends = nodes.course(values), np.cumsum([own.shape[1] for own in kinds.values()])
@@ -56,7 +56,7 @@ def of_vectors(kinds: Mapping[str, Array], nodes: Nodes) -> dict[str, Residual]:
     }
 
 
-def of_squares(kinds: Mapping[str, Array], nodes: Nodes) -> dict[str, Residual]:
+def of_squares(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Residual]:
     """Of magnitudes whose squares are values (n,); the errors of these are told by the magnitudes."""
     values = np.stack([*kinds.values()], axis=1)
     off, largest = nodes.errors(values).value, values.max(axis=0, initial=0.0)
@@ -69,7 +69,7 @@ def of_squares(kinds: Mapping[str, Array], nodes: Nodes) -> dict[str, Residual]:
     }
 
 
-def highest(squares: Course, nodes: Nodes, errors: Array) -> list[tuple[float, float]]:
+def highest(squares: Course, nodes: CycleNodes, errors: Array) -> list[tuple[float, float]]:
     """The largest of each magnitude by its squares, (n, m), and its angle; of what does not vary that of the first."""
     grid = nodes.grid
     there = squares(grid)

@@ -19,7 +19,7 @@ from heuncli.balancing.cycle import Cycle, at_unit_rate
 from heuncli.balancing.effects import MassEffects, mass_effects
 from heuncli.balancing.nodes import PieceNodes
 from heuncli.balancing.over_cycle import of_vectors
-from heuncli.balancing.resolved import Resolver, of_a_cycle, scales_of
+from heuncli.balancing.resolved import CycleResolver, of_a_cycle, scales_of
 from heuncli.balancing.results import BalanceResults, Period
 from heuncli.balancing.rows import CycleTurning, lengths
 from heuncli.balancing.told import told
@@ -83,7 +83,7 @@ class TwoPeriods:
 
         terms = self.effects(self.cycle, np.linspace(0.0, self.cycle.length, FEW)).terms
         rounding = [tolerances.SUM_ROUNDING * terms[name] for name in KINDS]
-        resolver = Resolver(sample, self.cycle, scales_of([3, 3, 3, 3], [*rounding, *rounding]))
+        resolver = CycleResolver(sample, self.cycle, scales_of([3, 3, 3, 3], [*rounding, *rounding]))
         resolver.resolve(self.places(np.array(self.study.history.jumps)))
         resolver.probed(self.places(self.study.close_times()[0]))
         found = resolver.found()
@@ -156,7 +156,7 @@ def sums(effects: MassEffects) -> dict[str, Array]:
 
 
 @record
-class Difference:
+class PeriodDifference:
     """What two periods differ by: part of the mean magnitude, what orders may, and what the largest does."""
 
     part: float
@@ -164,11 +164,11 @@ class Difference:
     peak: float
 
 
-def difference(nodes: PieceNodes, before: Array, last: Array, terms: float) -> Difference:
+def difference(nodes: PieceNodes, before: Array, last: Array, terms: float) -> PeriodDifference:
     """Of vectors (n, 3) in two periods; none where there is nothing but rounding of their terms."""
     mean = float(nodes.weights @ lengths(last))
     if mean <= tolerances.SUM_ROUNDING * terms:
-        return Difference(0.0, 0.0, 0.0)
+        return PeriodDifference(0.0, 0.0, 0.0)
     apart = float(nodes.weights @ lengths(last - before))
     tops = of_vectors({"last": last, "before": before}, nodes)
-    return Difference(apart / mean, 2.0 * apart, abs(tops["last"].peak - tops["before"].peak))
+    return PeriodDifference(apart / mean, 2.0 * apart, abs(tops["last"].peak - tops["before"].peak))

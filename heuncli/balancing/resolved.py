@@ -38,7 +38,7 @@ class Resolved(NamedTuple):
     settled: bool
 
 
-class Pieces(NamedTuple):
+class CyclePieces(NamedTuple):
     """Pieces (p,) with how many nodes each, and the largest tail of what they are parts of, of the columns' scales."""
 
     begins: Array
@@ -46,18 +46,18 @@ class Pieces(NamedTuple):
     sizes: Array
     before: Array
 
-    def some(self, which: Mask | Indices) -> Pieces:
+    def some(self, which: Mask | Indices) -> CyclePieces:
         """Some of them."""
-        return Pieces(*(x[which] for x in self))
+        return CyclePieces(*(x[which] for x in self))
 
 
-class Resolver:
+class CycleResolver:
     """Finds pieces for numbers over a cycle; what was found is kept in `kept` and `values`."""
 
     def __init__(self, sample: Sample, cycle: PieceNodes, scales: Callable[[Array], Array]) -> None:
         """cycle: without pieces yet; scales: of values (n, columns) what tails are seen against, (columns,)."""
         self.sample, self.cycle, self.scales = sample, cycle, scales
-        self.kept = Pieces(*(np.zeros(0) for _ in range(4)))
+        self.kept = CyclePieces(*(np.zeros(0) for _ in range(4)))
         self.values: list[Array] = []
         self.largest: Array | None = None
         self.settled, self.asked = True, 0
@@ -75,7 +75,7 @@ class Resolver:
             *(a + (b - a) * np.arange(n) / n for a, b, n in zip(inner[:-1], inner[1:], parts, strict=True)), [ends]
         ])  # fmt: skip
         sizes = np.where(np.diff(places) < SHORT * turn, FEW, MOST)
-        self.refine(Pieces(places[:-1], places[1:], sizes, np.full(len(sizes), np.inf)))
+        self.refine(CyclePieces(places[:-1], places[1:], sizes, np.full(len(sizes), np.inf)))
         return self.found()
 
     def probed(self, probes: Array) -> Resolved:
@@ -117,9 +117,9 @@ class Resolver:
         begins, behind = marks[:-1][inside], marks[1:][inside]
         self.values = [own for own, out in zip(self.values, again, strict=True) if not out]
         self.kept = self.kept.some(~again)
-        self.refine(Pieces(begins, behind, np.full(len(begins), MOST), np.full(len(begins), np.inf)))
+        self.refine(CyclePieces(begins, behind, np.full(len(begins), MOST), np.full(len(begins), np.inf)))
 
-    def refine(self, pieces: Pieces) -> None:
+    def refine(self, pieces: CyclePieces) -> None:
         """Halve pieces until each is resolved, or has no length; these are put to those that were found."""
         while len(pieces.begins):
             pieces = pieces.some(np.argsort(pieces.begins))
@@ -139,9 +139,9 @@ class Resolver:
             self.keep(pieces.some(done), [part for part, own_done in zip(parts, done, strict=True) if own_done])
             pieces = divided(pieces._replace(before=tails).some(~done))
 
-    def keep(self, pieces: Pieces, values: Sequence[Array]) -> None:
+    def keep(self, pieces: CyclePieces, values: Sequence[Array]) -> None:
         """Put pieces to those that were found."""
-        joined = Pieces(*(np.concatenate(both) for both in zip(self.kept, pieces, strict=True)))
+        joined = CyclePieces(*(np.concatenate(both) for both in zip(self.kept, pieces, strict=True)))
         every = [*self.values, *values]
         order = np.argsort(joined.begins, kind="stable")
         self.kept, self.values = joined.some(order), [every[i] for i in order]
@@ -152,7 +152,7 @@ class Resolver:
         assert self.largest is not None
         return np.where(self.largest > 0.0, self.largest, 1.0)
 
-    def with_pieces(self, pieces: Pieces) -> PieceNodes:
+    def with_pieces(self, pieces: CyclePieces) -> PieceNodes:
         """The cycle's nodes on pieces."""
         found: PieceNodes = replace(self.cycle, begins=pieces.begins, ends=pieces.ends, sizes=pieces.sizes.astype(int))
         return found
@@ -162,7 +162,7 @@ class Resolver:
         return Resolved(self.with_pieces(self.kept), np.concatenate(self.values), self.settled)
 
 
-def divided(pieces: Pieces) -> Pieces:
+def divided(pieces: CyclePieces) -> CyclePieces:
     """Short pieces with all their nodes, others in halves."""
     few = pieces.sizes < MOST
     more, wide = pieces.some(few), pieces.some(~few)
@@ -171,7 +171,7 @@ def divided(pieces: Pieces) -> Pieces:
         more._replace(sizes=np.full_like(more.sizes, MOST), before=np.full_like(more.before, np.inf)),
         wide._replace(ends=middle), wide._replace(begins=middle),
     ]  # fmt: skip
-    return Pieces(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    return CyclePieces(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def of_a_cycle(begin: float, turns: int, sense: float = 1.0) -> PieceNodes:

@@ -11,7 +11,7 @@ import numpy as np
 from heuncli import tolerances
 from heuncli.balancing.effects import MassEffects
 from heuncli.balancing.harmonics import turning_vectors
-from heuncli.balancing.nodes import Nodes
+from heuncli.balancing.nodes import CycleNodes
 from heuncli.balancing.results import OrderRow
 from heuncli.balancing.verdicts import verdict_of
 from heuncli.balancing.wanted import ANY, IN_TABLE, WantedOrders
@@ -62,7 +62,7 @@ def all_rows(
 
 
 def order_rows(
-    values: Array, nodes: Nodes, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS,
+    values: Array, nodes: CycleNodes, turning: CycleTurning, least: float, parts: Mapping[str, Array] = NO_PARTS,
     wanted: WantedOrders = ANY,
 ) -> tuple[OrderRow, ...]:  # fmt: skip
     """The orders of the sum over the bodies of values (n, bodies, c), up to the last that counts, and those asked for.

@@ -12,7 +12,7 @@ from heuncli.balancing.effects import MassEffects, mass_effects
 from heuncli.balancing.followed import SAMPLES
 from heuncli.balancing.harmonics import tail
 from heuncli.balancing.nodes import QUARTER
-from heuncli.balancing.resolved import Resolver, scales_of
+from heuncli.balancing.resolved import CycleResolver, scales_of
 from heuncli.records import replace
 from heuncli.results import Array
 
@@ -66,7 +66,7 @@ def on_pieces(followed: FollowedScene, about: Array) -> tuple[Cycle, bool]:
         return columns_of(mass_effects(cycle, about))
 
     first = mass_effects(followed.at(followed.even(FEW)), about)
-    resolver = Resolver(sample, run.cycle, scales_of(parts_of(columns_of(first)), rounding_in(first)))
+    resolver = CycleResolver(sample, run.cycle, scales_of(parts_of(columns_of(first)), rounding_in(first)))
     resolver.resolve(run.breaks)
     resolver.probed(np.union1d(run.short_steps(BETWEEN * run.length / SAMPLES), run.given_in_time()))
     found = resolver.found()

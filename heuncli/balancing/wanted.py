@@ -13,7 +13,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.balancing.legendre import MOST, polynomials
-from heuncli.balancing.nodes import Nodes, PieceNodes
+from heuncli.balancing.nodes import CycleNodes, PieceNodes
 from heuncli.records import record
 from heuncli.results import Array, Indices, Mask
 
@@ -31,7 +31,7 @@ class WantedOrders:
     asked: tuple[float, ...] | None = None
     noise: float = 0.0
 
-    def of(self, nodes: Nodes, values: Array, least: float) -> Indices:
+    def of(self, nodes: CycleNodes, values: Array, least: float) -> Indices:
         """The orders of values (n, c) that are looked at, whole numbers a cycle, ascending, from 1 on.
 
         least: what is below is none.
@@ -87,7 +87,7 @@ def last_wave(nodes: PieceNodes, values: Array) -> float:
     return float((degree * 2.0 / width).max()) * nodes.turns
 
 
-def left_beyond(nodes: Nodes, values: Array, order: float) -> float:
+def left_beyond(nodes: CycleNodes, values: Array, order: float) -> float:
     """What orders beyond one (a turn) may come to at most; 0 of even nodes."""
     if not isinstance(nodes, PieceNodes):
         return 0.0

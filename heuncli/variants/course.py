@@ -69,7 +69,7 @@ class Between(NamedTuple):
     noise: float
 
 
-class Peak(NamedTuple):
+class CoursePeak(NamedTuple):
     """Where the magnitude of the measure may be greatest between two neighbours, and how large; inf: a pole."""
 
     place: float
@@ -150,14 +150,14 @@ class MeasureCourse:
         one, other = self.samples[i], self.samples[i + 1]
         return one.gap is None or other.gap is None or (one.x, other.x) in self.jumps
 
-    def peak(self, i: int) -> Peak | None:
+    def peak(self, i: int) -> CoursePeak | None:
         """How far the magnitude of the measure may grow between a sample and the next; None: no sign of a peak."""
         if self.parted(i):
             return None
         one, other = self.samples[i], self.samples[i + 1]
         if self._measure(i) * self._measure(i + 1) < 0.0:
             place = self._pole(i)
-            return None if place is None else Peak(place, math.inf)
+            return None if place is None else CoursePeak(place, math.inf)
         found = [peak for k in (i, i + 1) if (peak := self._top(k)) is not None]
         inside = [peak for peak in found if one.x < peak.place < other.x]
         return max(inside, key=lambda peak: peak.size, default=None)
@@ -165,7 +165,7 @@ class MeasureCourse:
     def _measure(self, i: int) -> float:
         return _gap(self.samples[i]) + self.value
 
-    def _top(self, k: int) -> Peak | None:
+    def _top(self, k: int) -> CoursePeak | None:
         """The top of 1/measure^2 through a sample that is the largest of three."""
         if not 0 < k < len(self.samples) - 1 or self.parted(k - 1) or self.parted(k):
             return None
@@ -180,7 +180,7 @@ class MeasureCourse:
         middle = before + bend * (x[1] - x[0])  # the slope at the sample
         place = x[1] - 0.5 * middle / bend
         least = 1.0 - 0.25 * middle * middle / bend
-        return Peak(place, abs(m[1]) / math.sqrt(least) if least > 0.0 else math.inf)
+        return CoursePeak(place, abs(m[1]) / math.sqrt(least) if least > 0.0 else math.inf)
 
     def _pole(self, i: int) -> float | None:
         """Where 1/measure passes 0 between neighbours of different signs, if one side foretells that."""

@@ -43,6 +43,9 @@ def beside_specs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
 
 
+WARNED = ("flat_four_bar.yaml: passes through a singular pose", "rigid bodies do not say how, impacts: ")
+
+
 @pytest.mark.heavy
 @pytest.mark.usefixtures("beside_specs")
 @pytest.mark.parametrize("words", TYPED.values(), ids=TYPED)
@@ -50,7 +53,7 @@ def test_commands_run(words: list[str], capsys: pytest.CaptureFixture[str]) -> N
     """Each once, however often it stands there; not those whose output is shown, which run below."""
     assert enter(words) == 0
     told = capsys.readouterr().err.splitlines()
-    assert all(line.startswith("warning: heun: specs/flat_four_bar.yaml: passes through") for line in told)
+    assert all(line.startswith("warning: ") and any(part in line for part in WARNED) for line in told), told
 
 
 def test_no_command_is_missed() -> None:
