@@ -37,6 +37,9 @@ def is_of_load(name: str) -> bool:
     return name.startswith(f"{LOADS}.")
 
 
+HELD, PERIODIC = 1, 2  # kinds of tables: held beyond their ends, or going on
+
+
 @record
 class TableFunction:
     """A function given by points, as the kernel reads it: a piecewise cubic.
