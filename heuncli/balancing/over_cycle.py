@@ -60,7 +60,8 @@ def of_squares(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Resid
     """Of magnitudes whose squares are values (n,); the errors of these are told by the magnitudes."""
     values = np.stack([*kinds.values()], axis=1)
     off, largest = nodes.errors(values).value, values.max(axis=0, initial=0.0)
-    errors = np.where(largest > off, off / np.sqrt(np.maximum(largest, off)), np.sqrt(off))
+    roots = np.sqrt(np.maximum(largest, off))
+    errors = np.divide(off, roots, out=np.zeros_like(off), where=roots > 0.0)  # of the root: as of what is squared
     means = np.maximum(nodes.weights @ values, 0.0).tolist()
     tops = highest(nodes.course(values), nodes, errors)
     return {

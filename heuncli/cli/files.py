@@ -39,6 +39,9 @@ HINTS = {
 }
 NO_NAMES = ("", ".", "..")  # behind the last / of what is a folder
 OTHER_HINT = "name another file"
+# What a system or a file system says that knows no files without names.
+KNOWS_NO_SUCH = (errno.EOPNOTSUPP, errno.EISDIR, errno.EINVAL, errno.ENOENT, errno.ENOSYS, errno.EPERM)
+IS_CHANGED_OPEN = os.chmod in os.supports_fd  # whether the rights of an open file may be changed
 LEFT_BEHIND = 60.0  # seconds since anything was written to a file of nobody; what was just made may not be locked yet
 _looked_into: set[str] = set()  # folders
 
@@ -121,10 +124,10 @@ def write_all(number: int, content: bytes) -> None:
 def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
     """Write beside the place, into a file without a name where the system has such, then put that into the place.
 
-    So a process that is killed leaves nothing, but where there are none, or between the two calls that give a file the
-    name of an old one: what it leaves then the next run removes.
+    So a process that is killed leaves nothing, but where there are none, or between the calls that name, close and
+    place a file: what it leaves then the next run removes.
     """
-    folder, name = os.path.split(place.path)
+    folder = os.path.dirname(place.path)  # noqa: PTH120
     _remove_left_behind(folder)
     temporary = os.path.join(folder, f".heun-{os.urandom(8).hex()}")  # noqa: PTH118 - pathlib takes 3 ms
     remove = partial(_path(temporary).unlink, missing_ok=True)
@@ -135,16 +138,14 @@ def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
                 _lock(number)
                 write_pieces(number, pieces)
                 if place.state is not None:
-                    which = number if os.chmod in os.supports_fd else temporary
+                    which = number if IS_CHANGED_OPEN else temporary
                     os.chmod(which, stat.S_IMODE(place.state.st_mode))  # noqa: PTH101
                 os.fsync(number)
-                is_placed = not is_named and place.state is None and _link(number, folder, name)
-                if not is_placed and not is_named:
+                if not is_named:
                     _link(number, folder, os.path.basename(temporary))  # noqa: PTH119
             finally:
                 os.close(number)
-            if not is_placed:
-                os.replace(temporary, place.path)  # noqa: PTH105
+            os.replace(temporary, place.path)  # noqa: PTH105
         except BaseException:
             remove()
             raise
@@ -153,21 +154,21 @@ def replace(pieces: Iterable[bytes], place: FilePlace) -> None:
 def _open_new(folder: str, temporary: str, mode: int) -> tuple[int, bool]:
     """A new file, open, with no more rights than `mode` from the start; and whether it has its temporary name."""
     if hasattr(os, "O_TMPFILE") and os.path.isdir("/proc/self/fd"):  # noqa: PTH112 - by which it gets its name
-        with suppress(OSError):  # of a file system that knows no such files; what else is wrong the other way says, too
+        try:
             return os.open(folder, os.O_WRONLY | os.O_TMPFILE, mode), False
+        except OSError as reason:
+            if reason.errno not in KNOWS_NO_SUCH:
+                raise
     return os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), mode), True
 
 
-def _link(number: int, folder: str, name: str) -> bool:
-    """Give an open file without a name one; False where something of that name stands there already."""
+def _link(number: int, folder: str, name: str) -> None:
+    """Give an open file without a name one."""
     place = os.open(folder, os.O_RDONLY)
     try:  # only with a folder given Python lets the system follow the link
         os.link(f"/proc/self/fd/{number}", name, src_dir_fd=place, dst_dir_fd=place)
-    except FileExistsError:
-        return False
     finally:
         os.close(place)
-    return True
 
 
 def _lock(number: int) -> None:

@@ -24,7 +24,9 @@ class ReleasedBodies:
         self.parents: list[int] = layout.bodies["parent"].tolist()
         loops = {owner: loop_of(layout, owner) for owner in dict.fromkeys(layout.rows)}
         self.loops = [loops[owner] for owner in layout.rows]
-        self.different = list(loops.values())
+        rows = layout.tables["closures"][: len(layout.rows)]
+        paths = [layout.indices[row["path"] : row["path"] + row["path_count"]] for row in rows]
+        self.moved_by = [({*path, *loop}, loop) for path, loop in zip(paths, self.loops, strict=True)]
         self.first: set[int] = self._joined({i for r in coupled for i in self.loops[r]})
         self.places = set(self.first)
 
@@ -49,10 +51,10 @@ class ReleasedBodies:
         return found
 
     def _joined(self, places: set[int]) -> set[int]:
-        """The bodies with all others around closure rows that they share."""
+        """The bodies with all others around closure rows that they move: a cv joint turns what its shaft carries."""
         found, grown = set(places), True
         while grown:
-            met = {i for loop in self.different if not found.isdisjoint(loop) for i in loop}
+            met = {i for movers, loop in self.moved_by if not found.isdisjoint(movers) for i in loop}
             grown = not met <= found
             found |= met
         return found

@@ -57,7 +57,7 @@ def test_steps_that_are_known_before_are_counted(heun: Heun, folder: Path, monke
     monkeypatch.setattr(memory_left, "_left", lambda: iter([8e6]))
     done = heun("run", "dense.yaml")
     assert (done.returncode, done.stdout) == (4, "")
-    assert "loads and drives jump or bend at 9,999 instants" in done.stderr and "[too-much-memory]" in done.stderr
+    assert "loads and drives jump or bend at 10,000 instants" in done.stderr and "[too-much-memory]" in done.stderr
     assert "hint: a shorter duration, or tables of fewer points" in done.stderr
     monkeypatch.setattr(memory_left, "_left", lambda: iter([8e8]))
     assert heun("run", "dense.yaml", "--quiet").returncode == 0

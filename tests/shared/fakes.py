@@ -135,7 +135,9 @@ class FakeStudy:
     @property
     def setup(self) -> Any:
         """What stands for the scene: a tree."""
-        return SimpleNamespace(scene=SimpleNamespace(layout=SimpleNamespace(rows=0)))
+        return SimpleNamespace(
+            scene=SimpleNamespace(layout=SimpleNamespace(rows=0), mechanism=SimpleNamespace(loads=()))
+        )
 
     @property
     def results(self) -> Results:

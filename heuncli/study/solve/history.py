@@ -14,6 +14,7 @@ import numpy as np
 
 from heuncli import tolerances
 from heuncli.errors import LimitError, Problem, SolveError
+from heuncli.expressions.discontinuities import one_sided_limits
 from heuncli.integration.check.distance import Marks, motion_error
 from heuncli.integration.check.estimate import CheckedRun, checked_run, recovered_at
 from heuncli.integration.check.instants import interleaved
@@ -99,7 +100,7 @@ def integrate(
         return state(setup, float(times[0]), tolerance, by_cause)
     jumps = begin(setup)
     if room is not None:
-        require_room_for_steps(setup, len(jumps) + 1, room)
+        require_room_for_steps(setup, len(one_sided_limits(jumps)) + 1, room)
     checked = checked_motion(setup, tolerance, jumps, deadline, by_cause)
     jumps = tuple(sorted({*jumps, *checked.run.jumps}))
     require_followed(runner, checked.run)
@@ -124,7 +125,7 @@ def begin(setup: Setup) -> tuple[float, ...]:
     require_start(setup.scene, first)
     require_motion(setup.scene.layout, first)
     jumps = tuple(discontinuities_of(setup.scene.mechanism, float(setup.spec.analysis.times[-1])))
-    require_steps(len(jumps) + 1, setup.method)
+    require_steps(len(one_sided_limits(jumps)) + 1, setup.method)
     return jumps
 
 

@@ -23,7 +23,7 @@ def low_hop(x: float) -> str:
     """A flight of so much height, of a gap that is a sum of 1."""
     one = np.ones(1)
     reach = tolerances.KERNEL["touching"] * one
-    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, reach, one)
+    touch = Touching(np.zeros(1, dtype=int), np.zeros((1, 1, 6)), one, one, reach, one, one)
     return "none" if short_flights(touch, one, -one / (2.0 * x), 0.0)[0] else "flies"
 
 
