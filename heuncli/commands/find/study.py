@@ -38,6 +38,7 @@ def look(
     try:
         course.scan()
         looked_at, enclosed = 0, -1
+        refined_at: dict[int, Sample | None] = {}  # the extremes as their refinement left them
         while len(course.samples) > looked_at:  # whatever was found is looked at like the scan
             looked_at = len(course.samples)
             course.withhold_isolated()
@@ -49,7 +50,9 @@ def look(
             if not any(meetings(course)) and extreme(course, 1) is not None:
                 refined = True
                 for way in (-1, 1):
-                    refine_extreme(course, way)
+                    if way not in refined_at or extreme(course, way) != refined_at[way]:  # another one by now
+                        refine_extreme(course, way)
+                        refined_at[way] = extreme(course, way)
             if len(course.samples) == looked_at:
                 close_edges(course)
     except SpentError:
