@@ -61,7 +61,9 @@ def of_squares(kinds: Mapping[str, Array], nodes: CycleNodes) -> dict[str, Resid
     values = np.stack([*kinds.values()], axis=1)
     off, largest = nodes.errors(values).value, values.max(axis=0, initial=0.0)
     roots = np.sqrt(np.maximum(largest, off))
-    errors = np.divide(off, roots, out=np.zeros_like(off), where=roots > 0.0)  # of the root: as of what is squared
+    errors = np.divide(
+        off, roots, out=np.zeros_like(off), where=roots > 0.0
+    )  # what an error of the square makes of its root
     means = np.maximum(nodes.weights @ values, 0.0).tolist()
     tops = highest(nodes.course(values), nodes, errors)
     return {

@@ -66,7 +66,7 @@ def test_a_sweep_finds_the_indices_of_ishigamis_function(heun: Heun, folder: Pat
     for one, first, total in zip(own["indices"], FIRST, TOTAL, strict=True):
         for told, truth in ((one["first"], first), (one["total"], total)):
             half = 0.5 * (told["high"] - told["low"])
-            assert abs(told["value"] - truth) < 3.0 * half and half < 0.2
+            assert abs(told["value"] - truth) < 3.0 * half and half < 0.16
     assert abs(own["mean"]["value"] - 0.5 * a) < own["mean"]["high"] - own["mean"]["value"]
     assert own["deviation"]["low"] < math.sqrt(V) < own["deviation"]["high"]
 
