@@ -45,7 +45,7 @@ def up(x: cython.double) -> cython.double:
 def sum_below(a: cython.double, b: cython.double) -> cython.double:
     """The largest number not above a + b."""
     s: cython.double = a + b
-    if s - s != 0.0:
+    if not -INFINITY < s < INFINITY:
         return down(s) if s == s else -INFINITY
     c: cython.double = s - a
     error: cython.double = (a - (s - c)) + (b - c)
