@@ -144,7 +144,6 @@ def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
 )
 def test_where_a_load_has_no_derivative_there_are_no_matrices(law: str, said: str) -> None:
     scene = {
-        "heun": 1,
         "ground": {"points": {"O": [0, 0, 0]}},
         "bodies": {"cart": {"mass": 2, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0]}}},
         "joints": {"g": {"type": "slide", "from": "ground.O", "to": "cart.o", "axis": [1, 0, 0]}},
