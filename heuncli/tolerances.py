@@ -65,6 +65,7 @@ EIGENVALUE = 64.0 * EPS  # of the norm, times the number of motions: what some d
 FREELY_PUSHED = 1e-9  # of the loads along a motion that nothing holds: a sum of poses that are closed to OPEN_GAP
 OFF_BALANCE = 1e-9  # [rad] or of the size: so far a start may be from the pose that rests; frequencies keep nine digits
 KINK = 1e-9  # of a coordinate, or 1: so near to where a law jumps or bends a pose is on it, closed as it is to OPEN_GAP
+STEEP = 0.5  # of the largest slope within KINK: a root there doubles it at each step, what is smooth keeps it to KINK
 GOES_ON = 1e-8  # of the stiffness and loads: what of them may change as a steady motion goes on; rounding of long ways
 
 # -- orders

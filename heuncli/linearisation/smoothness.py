@@ -1,8 +1,9 @@
 """Whether the laws of a scene have a slope in a state: where one jumps or bends, small oscillations are not linear.
 
 An expression in coordinates is looked at on either side, by so little that only a branch that begins there can differ;
-on the branches met its value and its slope must be those of the branches here. A force along
-the line between two points has no direction where they coincide. A contact that touches and bears nothing is one-sided.
+on the branches met its value and its slope must be those of the branches here. A root close by has no branch, but a
+slope that is another one at every step towards it. A force along the line between two points has no direction where
+they coincide. A contact that touches and bears nothing is one-sided.
 """
 
 from __future__ import annotations
@@ -13,93 +14,128 @@ from typing import Any
 import numpy as np
 
 from heuncli import tolerances
+from heuncli.integration.evaluator import Recovered
 from heuncli.kernel.choose import expressions as evaluator
 from heuncli.kernel.choose import jets
 from heuncli.linearisation.steady_motion import Looked
 from heuncli.mechanism.model import PairLoad, path_of_load
+from heuncli.named_tuples import NamedTuple
 from heuncli.response import variables_at
 from heuncli.results import Array
+from heuncli.tree.layout import Layout
+
+HALVED = 0.5 ** np.arange(16)
+BESIDE = np.concatenate([[0.0], HALVED, -HALVED])  # of the width looked at: near a root, wherever it lies in it
+CLOSE = np.abs(BESIDE) <= 0.125
 
 
 def without_slope(here: Looked) -> Iterator[str]:
     """Sentences on what has none."""
-    yield from coincident(here)
-    yield from bent(here)
+    yield from without_derivative(here.layout, here.t, here.at)
     yield from touching(here)
 
 
-def coincident(here: Looked) -> Iterator[str]:
+def without_derivative(layout: Layout, t: float, at: Recovered) -> Iterator[str]:
+    """Sentences on the loads that have none in the one state of at."""
+    yield from coincident(layout, at)
+    yield from bent(layout, t, at.states[0])
+
+
+def coincident(layout: Layout, at: Recovered) -> Iterator[str]:
     """Springs and actuators whose two points coincide; but a spring without length, or damping, pulls back evenly."""
-    for load, rows in here.layout.mechanism.load_rows():
+    for load, rows in layout.mechanism.load_rows():
         if not isinstance(load, PairLoad) or load.a == load.b:
             continue
         even = load.value is None and load.length == 0.0 and load.damping == 0.0
-        if here.at.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * here.layout.size and not even:
+        if at.loads["span"][0, rows].min() <= tolerances.NO_LENGTH * layout.size and not even:
             yield f"forces.{load.name} has no direction, for its two points coincide"
 
 
-def bent(here: Looked) -> Iterator[str]:
-    """Loads whose expressions jump or bend there."""
-    if not here.layout.pack.held:
+class Law(NamedTuple):
+    """A program of a load: whose it is, where it stands, and the variables that the load has."""
+
+    load: str
+    start: int
+    count: int
+    variables: frozenset[int]
+
+
+def bent(layout: Layout, t: float, state: Array) -> Iterator[str]:
+    """Loads whose expressions jump or bend there, or have a root so near that no slope is that of the pose."""
+    if len(layout.pack.variables) == 1:
         return
-    programs = expressions(here)
-    variables = values(here)
-    own = branches(programs, here, variables)
+    programs, laws = expressions(layout), laws_of(layout)
+    variables = np.array(variables_at(layout, t, state))
+    own = branches(programs, laws, variables)
     for k in range(1, len(variables)):
         for sign in (1.0, -1.0):
             beside = variables.copy()
             beside[k] += sign * tolerances.KINK * max(1.0, abs(beside[k]))
-            met = branches(programs, here, beside)
+            met = branches(programs, laws, beside)
             if met != own:
-                yield from differing(programs, here, variables, own, met)
+                yield from differing(programs, laws, variables, own, met)
+        for law in laws:
+            if k in law.variables and is_steep(programs, law, variables, k, own):
+                yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
 
 
-def differing(programs: Any, here: Looked, variables: Array, own: list[float], met: list[float]) -> Iterator[str]:
+def differing(programs: Any, laws: list[Law], variables: Array, own: list[float], met: list[float]) -> Iterator[str]:
     """Loads that have another value or slope on other branches."""
-    for load, start, count in programs_of(here):
-        (value, slope), (other, turned) = (on_branches(programs, start, count, variables, b) for b in (own, met))
+    for law in laws:
+        (value, slope), (other, turned) = (on_branches(programs, law, variables, b) for b in (own, met))
         size = 1.0 + abs(value) + np.abs(slope).max()
         if not max(abs(value - other), np.abs(slope - turned).max()) <= tolerances.KINK * size:
-            yield f"{load} jumps or bends there"
+            yield f"{law.load} jumps or bends there"
 
 
-def expressions(here: Looked) -> Any:
+def is_steep(programs: Any, law: Law, variables: Array, k: int, held: list[float]) -> bool:
+    """Whether a law's slope along a variable, on its branches here, is another one, or none, within KINK of the pose.
+
+    A slope that is next to none in the pose, and grows evenly beside it, is one: that of a square.
+    """
+    around = np.tile(variables, (len(BESIDE), 1))
+    around[:, k] += BESIDE * tolerances.KINK * max(1.0, abs(variables[k]))
+    slopes = np.array([on_branches(programs, law, x, held)[1][k] for x in around])
+    if not np.isfinite(slopes).all():
+        return True
+    most, spread = np.abs(slopes).max(), np.ptp(slopes)
+    is_flat = abs(slopes[0]) <= tolerances.STEEP * most and np.ptp(slopes[CLOSE]) <= tolerances.STEEP * spread
+    return bool(spread > tolerances.STEEP * most) and not is_flat
+
+
+def expressions(layout: Layout) -> Any:
     """The scene's programs, in a memory of their own."""
-    pack = here.layout.pack
+    pack = layout.pack
     return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
 
 
-def values(here: Looked) -> Array:
-    """What the expressions' variables are: t, then coordinates and rates, of joints and of points."""
-    return np.array(variables_at(here.layout, here.t, here.at.states[0]))
-
-
-def programs_of(here: Looked) -> list[tuple[str, int, int]]:
-    """The programs of all loads: whose, and where they stand."""
-    table = here.layout.tables["loads"]
+def laws_of(layout: Layout) -> list[Law]:
+    """The programs of all loads."""
+    table, places = layout.tables["loads"], {use: k for k, use in enumerate(layout.pack.variables)}
     return [
-        (path_of_load(load), int(row[part]["start"]), int(row[part]["count"]))
-        for load, rows in here.layout.mechanism.load_rows()
+        Law(path_of_load(load), int(row[part]["start"]), int(row[part]["count"]), used)
+        for load, rows in layout.mechanism.load_rows()
+        for used in [frozenset(places[use] for law in load.values for use in law.uses)]
         for row in table[rows]
         for part in "xyz"
         if row[part]["count"]
     ]
 
 
-def branches(programs: Any, here: Looked, variables: Array) -> list[float]:
+def branches(programs: Any, laws: list[Law], variables: Array) -> list[float]:
     """The branches on which the loads' expressions find these variables."""
     programs.hold(evaluator.HOLDING["taken"])
-    for _, start, count in programs_of(here):
-        programs.evaluate(start, count, variables.tolist())
+    for law in laws:
+        programs.evaluate(law.start, law.count, variables.tolist())
     return list(programs.branches())
 
 
-def on_branches(programs: Any, start: int, count: int, variables: Array, held: list[float]) -> tuple[float, Array]:
+def on_branches(programs: Any, law: Law, variables: Array, held: list[float]) -> tuple[float, Array]:
     """Value and slope of a program on branches that are held."""
     programs.hold(evaluator.HOLDING["held"])
     programs.hold_branches(held)
     x = variables.tolist()
-    return programs.evaluate(start, count, x), np.array(jets.gradient(programs, start, count, x))
+    return programs.evaluate(law.start, law.count, x), np.array(jets.gradient(programs, law.start, law.count, x))
 
 
 def touching(here: Looked) -> Iterator[str]:

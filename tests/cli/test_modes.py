@@ -66,6 +66,10 @@ def test_the_whole_thing_driven_has_none(heun: Heun, folder: Path) -> None:
     assert done.returncode == 0 and "nothing is free to oscillate" in done.stdout
 
 
+# 4e-19 m off the root, where its slope would read as 8e9 N/m
+NEAR_A_ROOT = with_force("{type: torque, joint: rail, value: '-10*sqrt(rail.travel + 4e-19)'}")
+
+
 @pytest.mark.parametrize(
     ("text", "code", "said"),
     [
@@ -74,6 +78,7 @@ def test_the_whole_thing_driven_has_none(heun: Heun, folder: Path) -> None:
         (with_force("{type: torque, joint: hinge, value: -3*sign(hinge.rate)}"), "no-modes", "forces.f jumps or bends"),
         (with_force("{type: torque, joint: hinge, value: -3*abs(hinge.angle)}"), "no-modes", "forces.f jumps or bends"),
         (with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 1}"), "no-modes", "no direction"),
+        (NEAR_A_ROOT, "no-modes", "forces.f has no slope there"),
     ],
 )
 def test_refused(text: str, code: str, said: str) -> None:
@@ -88,6 +93,8 @@ def test_refused(text: str, code: str, said: str) -> None:
     [
         with_force("{type: torque, joint: hinge, value: -3*hinge.rate*abs(hinge.rate)}"),
         with_force("{type: torque, joint: hinge, value: 'min(0, -hinge.angle**3)'}"),
+        with_force("{type: torque, joint: hinge, value: -1e6*hinge.angle**2}"),
+        with_force("{type: torque, joint: rail, value: -1e-3*tanh(rail.travel/1e-8)}"),
         with_force("{type: spring, from: ground.O, to: cart.c, stiffness: 9, length: 0}"),
     ],
 )

@@ -9,7 +9,8 @@ import pytest
 
 from heuncli.commands.lagrange.coordinates import accelerations, chosen
 from heuncli.commands.lagrange.instant import Instant, instant_of
-from heuncli.commands.lagrange.study import LagrangeQuestion, told
+from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange, told
+from heuncli.errors import SolveError
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.displacements import displaced
 from heuncli.linearisation.linearise import linearised
@@ -131,3 +132,22 @@ def test_the_velocity_of_a_point_changes_with_the_pose() -> None:
     rates = [none, none, by_pose.real, by_pose.imag]
     wanted = np.array([np.concatenate(pair) for pair in zip(rows, rates, strict=True)])
     assert np.abs(space.C - wanted).max() <= 1e-14 * np.abs(wanted).max() * 10.0
+
+
+@pytest.mark.parametrize(
+    ("law", "said"),
+    [
+        ("-10*sqrt(g.travel)", "has no slope there"),
+        ("-10*abs(g.travel)", "jumps or bends there"),
+        ("-10*sign(g.speed)", "jumps or bends there"),
+    ],
+)
+def test_where_a_load_has_no_derivative_there_are_no_matrices(law: str, said: str) -> None:
+    scene = {
+        "ground": {"points": {"O": [0, 0, 0]}},
+        "bodies": {"cart": {"mass": 2, "center": [0, 0, 0], "inertia": [1, 1, 1], "points": {"o": [0, 0, 0]}}},
+        "joints": {"g": {"type": "slide", "from": "ground.O", "to": "cart.o", "axis": [1, 0, 0]}},
+        "forces": {"pull": {"type": "torque", "joint": "g", "value": law}},
+    }
+    with pytest.raises(SolveError, match=f"forces.pull {said}"):
+        lagrange(load("scene.yaml", to_yaml(scene)), LagrangeQuestion(state_space=True))

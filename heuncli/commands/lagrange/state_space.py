@@ -29,6 +29,7 @@ from heuncli.joint_kinds import JOINTS, RATES
 from heuncli.kinetostatics.actions import applied_loads
 from heuncli.kinetostatics.bodies import body_states
 from heuncli.linearisation.linearise import Linearised, linearised
+from heuncli.linearisation.smoothness import without_derivative
 from heuncli.mechanism.model import JointLoad, Load, PairLoad, PointLoad
 from heuncli.nearest import did_you_mean
 from heuncli.records import record, replace
@@ -59,6 +60,7 @@ def state_space(at: Instant, by: Chosen, Q: Array, asked: Sequence[str], outputs
     scene = freed(at.setup.scene, dict(zip(by.names, Q, strict=True)))
     state = settled(scene, at)
     found = linearised(scene.layout, at.t, state, at.holding)
+    require_derivatives(scene, at, found)
     own = chosen(scene.scene, found, scene.driven, by.names)
     moving = bool(np.abs(state[rates_at(scene)]).max(initial=0.0) > 0.0)
     require_coordinates(scene, own, found, moving)
@@ -122,6 +124,17 @@ def require_given_loads(at: Instant) -> None:
         where = mechanism.rubs_in(load)
         message = f"friction hangs on what presses, {where}, and so on the inputs: no state space has it yet"
         raise SolveError(Problem(CODE, message, hint="give friction a size: friction: {type: friction, force: 20 N}"))
+
+
+def require_derivatives(scene: FreedScene, at: Instant, found: Linearised) -> None:
+    """Raise SolveError where a load has no derivative in the state: it jumps, bends, or has a root there."""
+    answered = scene.runner.recovered(np.array([at.t]), found.state[None, :], holding=at.holding)
+    sentences = list(dict.fromkeys(without_derivative(scene.layout, at.t, answered)))
+    if not sentences and not (np.isfinite(found.by_place).all() and np.isfinite(found.by_rate).all()):
+        sentences = ["a load has no slope there"]
+    hint = "take a state a little beside it, or give the load a slope there: sqrt(x**2 + 1e-6) for abs(x)"
+    if sentences:
+        raise SolveError(*(Problem(CODE, f"{x}: motions beside it are not linear", hint=hint) for x in sentences))
 
 
 def beside_rounding(offset: Array, size: float) -> Array:
