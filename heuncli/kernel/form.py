@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 PACKAGE = __package__ or "heuncli.kernel"
 FOLDER = os.path.dirname(__file__)
+FILES = frozenset(os.listdir(FOLDER))
 MOST_NAMED = 5  # files in a message: a line's worth
 
 
@@ -35,12 +36,19 @@ class KernelError(HeunError):
 
 def find_compiled() -> str:
     """The name of the compiled kernel's file, as Python would import it; empty where there is none."""
-    files = os.listdir(FOLDER)
-    return next((f"{NAME}{suffix}" for suffix in EXTENSION_SUFFIXES if f"{NAME}{suffix}" in files), "")
+    return next((f"{NAME}{suffix}" for suffix in EXTENSION_SUFFIXES if f"{NAME}{suffix}" in FILES), "")
+
+
+def refuse_leftovers() -> None:
+    """Raises KernelError for modules that an older heun compiled one by one: they would run in place of the plain files."""
+    left = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
+    if left:
+        message = f"compiled files of an older heun lie among the kernel's: {left[0]}, {len(left)} in all"
+        raise KernelError(Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew"))
 
 
 def edited_since_compiled(compiled: str) -> list[str]:
-    """Names of sources whose code was edited since the kernel was compiled; none where only their times look like it.
+    """Names of modules whose code was edited since the kernel was compiled; none where only their times look like it.
 
     Only a checkout is looked at: what is installed is not edited, and the times of its files mean nothing.
     """
@@ -62,6 +70,7 @@ def choose(wish: str) -> Literal["compiled", "pure"]:
         message = f"HEUN_KERNEL is '{wish}'; known: pure, compiled, require"
         raise KernelError(Problem("unknown-kernel", message, hint="unset it to let heun choose"))
     compiled = find_compiled()
+    refuse_leftovers()
     if wish in ("compiled", "require") and not compiled:
         message = f"HEUN_KERNEL={wish}, but this heun has no compiled kernel"
         hint = "install again where a C compiler is at hand, or unset HEUN_KERNEL to run the slower plain one"
@@ -69,8 +78,9 @@ def choose(wish: str) -> Literal["compiled", "pure"]:
     if not compiled or wish == "pure":
         return "pure"
     if edited := edited_since_compiled(compiled):
+        named = ", ".join(f"{name}.py" for name in edited[:MOST_NAMED])
         more = f" and {len(edited) - MOST_NAMED} more" if len(edited) > MOST_NAMED else ""
-        message = f"the compiled kernel is older than its text: {', '.join(edited[:MOST_NAMED])}{more} changed since"
+        message = f"the compiled kernel is older than its text: {named}{more} changed since"
         hint = "compile it again with: python -m heuncli.build; or run the slower plain one: HEUN_KERNEL=pure"
         raise KernelError(Problem("stale-kernel", message, hint=hint))
     return "compiled"

@@ -1,11 +1,11 @@
-"""The kernel's headers for Cython, made of its Python texts where it is compiled: a declaration stands nowhere twice.
+"""What Cython has to know of the kernel, read from its Python texts: a declaration stands nowhere twice (one_module.py).
 
-What a module says in Python, and what its header declares of it:
+What a module says in Python, and what that is for C:
 
-    from heuncli.kernel.tree import push    the same for C; from `math` and libm.py: the function of C's library. Of
-                                            modules that are compiled what counts is the block for plain Python
+    from math import sqrt                   in the block for plain Python: the function of C's library; so from libm.py.
+                                            What is imported from the kernel is there, in the one module
     GUIDE, DOT = range(2)                   in that block: an enumeration
-    SAFETY = 0.9                            at the top: a number of C, set where the module is loaded
+    SAFETY = 0.9                            at the top: a number of C
     class Body(Struct)                      a struct (structs.py), field by field
     def push(...)                           a C function, if it gives a C type or takes a pointer or a struct; where no
                                             object of Python is in it, without exceptions and without the interpreter's
@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from functools import cache
-from pathlib import Path
 
 from heuncli.kernel.modules import DECLARED, MODULES
 
@@ -30,9 +28,9 @@ EXTENSION_TYPES = ("Expressions", "Integration", "Memory", "Workspace")
 POINTERS = {"p_void": "void *", "p_char": "char *", "p_int": "int *", "p_double": "double *", "pp_double": "double **"}
 
 
-def declare(folder: Path, modules: dict[str, ast.Module]) -> str:
-    """The declarations of all modules of the kernel, whose text lies in the folder: enumerations, structs, types."""
-    structs = known_structs(folder)
+def declare(modules: dict[str, ast.Module]) -> str:
+    """The declarations of all modules of the kernel: enumerations, structs, extension types."""
+    structs = known_structs(modules)
     types = [node for name in MODULES for node in modules[name].body if isinstance(node, ast.ClassDef)]
     parts = [
         *(enumeration(module.body if name in DECLARED else plain_block(module)) for name, module in modules.items()),
@@ -43,11 +41,9 @@ def declare(folder: Path, modules: dict[str, ast.Module]) -> str:
     return "\n".join("".join(part) for part in parts if part)
 
 
-@cache
-def known_structs(folder: Path) -> frozenset[str]:
+def known_structs(modules: dict[str, ast.Module]) -> frozenset[str]:
     """The names of all structs of the kernel."""
-    modules = [ast.parse((folder / f"{name}.py").read_text(encoding="utf-8")) for name in DECLARED]
-    return frozenset(node.name for module in modules for node in module.body if isinstance(node, ast.ClassDef))
+    return frozenset(node.name for name in DECLARED for node in modules[name].body if isinstance(node, ast.ClassDef))
 
 
 def plain_block(module: ast.Module) -> list[ast.stmt]:

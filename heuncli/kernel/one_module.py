@@ -11,13 +11,14 @@ Everything of the kernel is in one name space there, so a name has one meaning i
 from __future__ import annotations
 
 import ast
+import builtins
 from collections.abc import Iterator
 from pathlib import Path
 
 from heuncli.kernel import headers
 from heuncli.kernel.headers import PACKAGE
 from heuncli.kernel.modules import DECLARED, MODULES, NAME
-from heuncli.kernel.sources import digest_code, digest_texts
+from heuncli.kernel.sources import digest_code, digest_texts, read
 
 FIRST = """\
 # Made of heuncli/kernel/*.py by one_module.py.
@@ -44,10 +45,11 @@ def write(folder: Path, to: Path) -> Path:
     """
     package = to.joinpath(*PACKAGE.split("."))
     package.mkdir(parents=True, exist_ok=True)
-    modules = {name: ast.parse(read(folder, name)) for name in (*DECLARED, *MODULES)}
+    modules = parse(folder)
     refuse_duplicates(modules)
-    texts = {f"{name}.pxi": include(read(folder, name), modules[name], headers.known_structs(folder)) for name in MODULES}
-    texts |= {f"{NAME}.pxd": headers.declare(folder, modules), f"{NAME}.pyx": compose(folder, modules)}
+    structs = headers.known_structs(modules)
+    texts = {f"{name}.pxi": include(read(str(folder), name), modules[name], structs) for name in MODULES}
+    texts |= {f"{NAME}.pxd": headers.declare(modules), f"{NAME}.pyx": compose(folder, modules)}
     texts |= {"__init__.pxd": "", "../__init__.pxd": ""}
     for name, text in texts.items():
         path = package / name
@@ -56,22 +58,22 @@ def write(folder: Path, to: Path) -> Path:
     return package / f"{NAME}.pyx"
 
 
-def read(folder: Path, name: str) -> str:
-    """The text of a module."""
-    return (folder / f"{name}.py").read_text(encoding="utf-8")
+def parse(folder: Path) -> dict[str, ast.Module]:
+    """All modules of the kernel by their names, those first that only declare."""
+    return {name: ast.parse(read(str(folder), name)) for name in (*DECLARED, *MODULES)}
 
 
 def compose(folder: Path, modules: dict[str, ast.Module]) -> str:
     """The text of the .pyx."""
     blocks = {name: headers.plain_block(module) for name, module in modules.items() if name in MODULES}
-    library = {name for block in blocks.values() for name in headers.library(block)}
+    library = sorted({name for block in blocks.values() for name in headers.library(block)})
     taken = {ast.unparse(node) for name in MODULES for node in modules[name].body if is_import(node)}
     numbers = [pair for name in MODULES for pair in headers.floats(modules[name])]
-    structs = headers.known_structs(folder)
+    structs = headers.known_structs(modules)
     inlined = [text for name in DECLARED for text in headers.inlined_functions(modules[name], structs)]
     parts = [
         FIRST,
-        f"from libc.math cimport {', '.join(sorted(library))}\n",
+        f"from libc.math cimport {', '.join(library)}\n",
         "".join(f"{line}\n" for line in sorted(taken)),
         f'SOURCES = "{digest_texts(str(folder))}"\nCODES = {digest_code(str(folder))}\n',
         NUMBERS.format(
@@ -121,27 +123,28 @@ def blank(lines: list[str], first: int, last: int) -> None:
 
 
 def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
-    """Raises DuplicateName where two modules, or two places of one, define the same name."""
-    places: dict[str, str] = {}
+    """Raises DuplicateName where a name of the kernel is defined twice, or is one of Python's own or of C's library."""
+    blocks = [headers.plain_block(module) for name, module in modules.items() if name in MODULES]
+    places = dict.fromkeys(dir(builtins), "Python itself") | {
+        name: "C's library" for block in blocks for name in headers.library(block)
+    }
     wrong = []
     for module, name, line in defined_names(modules):
         place = f"{module}.py:{line}"
         if name in places:
-            wrong.append(f"{name}: {places[name]} and {place}")
+            wrong.append(f"{name} is in {places[name]} and in {place}")
         places.setdefault(name, place)
     if wrong:
-        raise DuplicateName(f"a name has one meaning in the whole kernel, which is compiled as one module; {'; '.join(wrong)}")
+        raise DuplicateName(f"the kernel is compiled as one module, where a name has one meaning: {'; '.join(wrong)}")
 
 
 def defined_names(modules: dict[str, ast.Module]) -> Iterator[tuple[str, str, int]]:
     """Module, name and line of all that is defined at the top of modules, or in their blocks for plain Python."""
     for module, text in modules.items():
-        block = [] if module in DECLARED else headers.plain_block(text)
-        for node in (*text.body, *block):
+        for node in (*text.body, *([] if module in DECLARED else headers.plain_block(text))):
             if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
                 yield module, node.name, node.lineno
             elif isinstance(node, ast.Assign):
-                for target in node.targets:
-                    for part in ast.walk(target):
-                        if isinstance(part, ast.Name):
-                            yield module, part.id, node.lineno
+                for part in ast.walk(node.targets[0]):
+                    if isinstance(part, ast.Name):
+                        yield module, part.id, node.lineno

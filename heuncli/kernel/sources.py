@@ -14,7 +14,7 @@ TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-SOURCES = frozenset(f"{name}.py" for name in (*MODULES, *DECLARED, "headers", "modules", "one_module"))
+SOURCES = frozenset((*MODULES, *DECLARED, "headers", "modules", "one_module"))
 
 
 def digest_texts(folder: str) -> str:
@@ -30,12 +30,13 @@ def digest_code(folder: str, names: Iterable[str] = SOURCES) -> dict[str, str]:
     import hashlib
 
     return {
-        name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in sorted(names)
+        name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in names
     }
 
 
 def read(folder: str, name: str) -> str:
-    with open(os.path.join(folder, name), encoding="utf-8") as file:
+    """The text of a module."""
+    with open(os.path.join(folder, f"{name}.py"), encoding="utf-8") as file:
         return file.read()
 
 
@@ -62,7 +63,6 @@ def code_lines(text: str) -> Iterator[str]:
 
 
 def newer_than(folder: str, compiled: str) -> list[str]:
-    """Which of a folder's files are sources that look newer than its compiled kernel; 0.1 ms on a quick disk."""
+    """Which modules have a text that looks newer than the compiled kernel; 0.1 ms on a quick disk."""
     last = os.stat(os.path.join(folder, compiled)).st_mtime_ns
-    names = SOURCES.intersection(os.listdir(folder))
-    return sorted(name for name in names if os.stat(f"{folder}/{name}").st_mtime_ns > last)
+    return sorted(name for name in SOURCES if os.stat(os.path.join(folder, f"{name}.py")).st_mtime_ns > last)
