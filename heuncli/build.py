@@ -75,7 +75,7 @@ def oldest(distribution: Distribution) -> int:
 def add_kernel(distribution: Distribution) -> None:
     """Make the kernel part of what is built, unless it was decided otherwise; its text is made when it is compiled."""
     if distribution.ext_modules is None:
-        distribution.ext_modules = [Extension(f"{one_module.PACKAGE}.{one_module.NAME}", [], optional=True)]
+        distribution.ext_modules = [Extension(f"{one_module.PACKAGE}.{one_module.NAME}", [])]
 
 
 def say(text: str) -> None:
@@ -106,6 +106,8 @@ class BuildKernel(build_ext):
         self.kernel = os.environ.get("HEUN_KERNEL", "")
         if self.kernel not in ("", "require", "compiled", "pure"):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
+        for extension in self.extensions or []:
+            extension.optional = self.kernel not in ("require", "compiled")
         self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})
         self.generated = Path(self.build_temp, "generated")
         self.cython_include_dirs = [str(self.generated)]

@@ -59,9 +59,9 @@ def edited_since_compiled(compiled: str) -> list[str]:
         return []
     from heuncli.kernel import compiled as kernel  # type: ignore[attr-defined]
 
-    if digest_texts(FOLDER) == kernel.SOURCES:
+    if digest_texts(FOLDER) == kernel.TEXT_DIGEST:
         return []
-    return [name for name in newer if digest_code(FOLDER, [name]) != {name: kernel.CODES.get(name)}]
+    return [name for name in newer if digest_code(FOLDER, [name]) != {name: kernel.CODE_DIGESTS.get(name)}]
 
 
 def choose(wish: str) -> Literal["compiled", "pure"]:

@@ -34,6 +34,9 @@ NUMBERS = '''cdef extern from *:
 '''
 
 
+OWN = ("TEXT_DIGEST", "CODE_DIGESTS", "cython")
+
+
 class DuplicateName(Exception):
     """A name has two meanings in the kernel."""
 
@@ -75,7 +78,7 @@ def compose(folder: Path, modules: dict[str, ast.Module]) -> str:
         FIRST,
         f"from libc.math cimport {', '.join(library)}\n",
         "".join(f"{line}\n" for line in sorted(taken)),
-        f'SOURCES = "{digest_texts(str(folder))}"\nCODES = {digest_code(str(folder))}\n',
+        f'TEXT_DIGEST = "{digest_texts(str(folder))}"\nCODE_DIGESTS = {digest_code(str(folder))}\n',
         NUMBERS.format(
             given="".join(f"    static const double heun_{name} = {number!r};\n" for name, number in numbers),
             known="\n".join(f'    const double {name} "heun_{name}"' for name, _ in numbers),
@@ -125,7 +128,7 @@ def blank(lines: list[str], first: int, last: int) -> None:
 def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
     """Raises DuplicateName where a name of the kernel is defined twice, or is one of Python's own or of C's library."""
     blocks = [headers.plain_block(module) for name, module in modules.items() if name in MODULES]
-    places = dict.fromkeys(dir(builtins), "Python itself") | {
+    places = dict.fromkeys((*dir(builtins), *OWN), "Python itself") | {
         name: "C's library" for block in blocks for name in headers.library(block)
     }
     wrong = []
