@@ -11,10 +11,9 @@ import tarfile
 import zipfile
 from importlib.metadata import distribution
 from pathlib import Path
-from runpy import run_path
 
 PROJECT = Path(__file__).parents[1]
-MODULES = run_path(str(PROJECT / "heuncli/kernel/modules.py"))["MODULES"]
+KERNEL = "heuncli/kernel/compiled.abi3.so"
 COMPILED = (".so", ".pyd")
 
 
@@ -35,15 +34,6 @@ def differ(what: str, found: set[str], wanted: set[str]) -> list[str]:
     ]
 
 
-def wrong_in(what: str, names: set[str], modules: list[str]) -> list[str]:
-    """What is wrong with the files of a package that should hold these compiled modules."""
-    kernel = {name for name in names if name.endswith(COMPILED)}
-    wrong = differ(what, names - kernel, files("heuncli/**/*"))
-    if sorted(Path(name).name.partition(".")[0] for name in kernel) != sorted(modules):
-        wrong.append(f"{what} holds compiled modules {sorted(kernel)}")
-    return wrong + [f"{name} is for one version of Python" for name in kernel if ".cp" in name.lower()]
-
-
 def main(folder: Path) -> list[str]:
     (source,) = folder.glob("*.tar.gz")
     (plain,) = folder.glob("*-py3-none-any.whl")
@@ -53,11 +43,11 @@ def main(folder: Path) -> list[str]:
     top = ("README.md", "pyproject.toml", ".ci/*")
     wrong = differ(source.name, names - generated, files("heuncli/**/*", "specs/**/*", "tests/**/*", *top))
     names = {name for name in zipfile.ZipFile(plain).namelist() if ".dist-info/" not in name}
-    wrong += wrong_in(plain.name, names, [])
+    wrong += differ(plain.name, names, files("heuncli/**/*"))
 
     installed = distribution("heuncli")
-    names = {path.as_posix() for path in installed.files or () if path.parts[0] == "heuncli"}
-    wrong += wrong_in("what is installed", {name for name in names if not name.endswith(".pyc")}, MODULES)
+    names = {path.as_posix() for path in installed.files or () if path.parts[0] == "heuncli" and path.suffix != ".pyc"}
+    wrong += differ("what is installed", names, files("heuncli/**/*") | {KERNEL})
     label = installed.read_text("WHEEL") or ""
     if not re.search("^Tag: cp311-abi3-", label, re.MULTILINE):
         wrong.append(f"the wheel that was installed is not for every CPython: {label}")

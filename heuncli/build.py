@@ -1,21 +1,22 @@
-"""How the package is built: the kernel by Cython in pure-Python mode, optional by default, one wheel for every CPython.
+"""How the package is built: the kernel by Cython, as one extension module, optional by default, one wheel for all CPythons.
 
-Its modules are those of kernel/modules.py; what C has to know of them is written from their text into the build folder
-(kernel/headers.py). HEUN_KERNEL at build time:
+Its text is made of the kernel's Python files in the build folder (kernel/one_module.py). HEUN_KERNEL at build time:
 
     unset      compile; where that fails (no compiler, no Python headers, no Cython) install the plain files instead
     require    a failed compilation fails the build
     pure       compile nothing
 
-`python -m heuncli.build` compiles in place, in a checkout; with --sanitize so that every access to memory and all
-arithmetic is checked as it runs, for tests (tests/sanitized.py).
+`python -m heuncli.build` compiles in place, in a checkout; with --quick in a third of the time, for a kernel that is
+edited and tried and runs slower; with --sanitize so that every access to memory and all arithmetic is checked as it
+runs, for tests (tests/sanitized.py). All give the same bits.
 
 A compiled kernel asks for nothing but Python's stable interface (PEP 384), so that one wheel serves the oldest Python
-that heun runs on and all that follow. Impure: reads HEUN_KERNEL, writes the build tree.
+that heun runs on and all that follow. Impure: reads HEUN_KERNEL, writes the build tree and to standard error.
 """
 
 from __future__ import annotations
 
+import gc
 import os
 import shutil
 import sys
@@ -28,9 +29,7 @@ from setuptools.command.build_ext import build_ext
 from setuptools.command.sdist import sdist
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # installers load this file alone, where no package can be imported
-from heuncli.kernel import headers
-from heuncli.kernel.modules import MODULES
-from heuncli.kernel.sources import KEEPER, digest
+from heuncli.kernel import one_module
 
 FOLDER = Path("heuncli", "kernel")
 # The kernel validates before it enters the loops and guards its divisors itself.
@@ -41,19 +40,14 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
 }
-# No contraction to fused multiply-adds, so that compiled and plain files give the same bits. No pairs of numbers as one
-# vector: a struct's numbers are written one by one and read soon after, and such a read waits until all are in memory.
-# No error numbers from sqrt: nobody reads them, and the call that would set one stands in the way of its loop.
-# No debugging information, which Python's own flags ask for: it takes a fifth of the time and most of the room of a
-# wheel, and changes no instruction.
-GNU_FLAGS = ("-O3", "-g0", "-ffp-contract=off", "-fno-tree-slp-vectorize", "-fno-math-errno")
-# The operations of expressions, a line or two each, go into the loop that runs them, as if C's `inline` stood there; so
-# do those of one body, freedom or row into the loops over the few that a scene has.
-INLINED = ("--param=max-inline-insns-auto=200",)
-# Rows of numbers that stages are combined of are no structs: two of them go as one vector.
-PAIRED = ("-ftree-slp-vectorize",)
-SMALL = ("evaluator", "jets", "tree", "plane", "plane_rows", "closures", "orthogonal", "response")
-GNU_FLAGS_OF = {"dense": PAIRED} | dict.fromkeys(SMALL, INLINED)
+# No contraction to fused multiply-adds, so that compiled and plain files give the same bits. No error numbers from sqrt:
+# nobody reads them, and the call that would set one stands in the way of its loop. No debugging information, which
+# Python's own flags ask for: it takes a fifth of the time and most of the room of a wheel, and changes no instruction.
+BITS = ("-g0", "-ffp-contract=off", "-fno-math-errno")
+# The operations of expressions, of one body, freedom or row, a line or two each, go into the loops over them, but not so
+# many that the loops no longer fit the processor's memory for instructions.
+GNU_FLAGS = ("-O3", *BITS, "--param=max-inline-insns-auto=60", "--param=inline-unit-growth=120")
+QUICK_FLAGS = ("-O1", *BITS)
 # What would be memory of another, or has no meaning in C (as NaN made a whole number), ends the process with its place.
 SANITIZED_FLAGS = (
     "-O1", "-g", "-fno-omit-frame-pointer", "-ffp-contract=off", "-fno-wrapv",
@@ -61,6 +55,14 @@ SANITIZED_FLAGS = (
 )  # fmt: skip
 CHECKED = {"boundscheck": True, "initializedcheck": True}
 MSVC_FLAGS = ("/O2", "/fp:precise")
+# Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
+COMPILES = "heun: the kernel is compiled, which takes about a minute on two cores"
+QUICKLY = "heun: the kernel is compiled quickly, to be tried: it runs slower than it can"
+PLAIN = (
+    "heun: the kernel is not compiled ({reason}): plain Python is installed, with the same numbers some hundred times "
+    "slower; with a C compiler and Python's headers (Debian: apt install gcc python3-dev) install heun again"
+)
+TERMINAL = "CONOUT$" if os.name == "nt" else "/dev/tty"
 # Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
 STABLE = sys.implementation.name == "cpython" and not sysconfig.get_config_var("Py_GIL_DISABLED")
 
@@ -71,18 +73,25 @@ def oldest(distribution: Distribution) -> int:
 
 
 def add_kernel(distribution: Distribution) -> None:
-    """Make the kernel's modules part of what is built, unless it was decided otherwise."""
+    """Make the kernel part of what is built, unless it was decided otherwise; its text is made when it is compiled."""
     if distribution.ext_modules is None:
-        distribution.ext_modules = [
-            Extension(f"heuncli.kernel.{name}", [(FOLDER / f"{name}.py").as_posix()], optional=True) for name in MODULES
-        ]
+        distribution.ext_modules = [Extension(f"{one_module.PACKAGE}.{one_module.NAME}", [])]
+
+
+def say(text: str) -> None:
+    """A line for who waits: on the terminal itself, for what a build prints installers keep to themselves."""
+    try:
+        with Path(TERMINAL).open("w", encoding="utf-8") as terminal:
+            print(text, file=terminal)
+    except OSError:
+        print(text, file=sys.stderr)
 
 
 class BuildKernel(build_ext):
-    """build_ext with the kernel's modules, headers and flags, and the meaning of HEUN_KERNEL."""
+    """build_ext with the kernel's text and flags, and the meaning of HEUN_KERNEL."""
 
     sanitized = False
-    given_up = False  # a module could not be compiled: all of them, or none
+    quick = False
 
     def initialize_options(self) -> None:
         add_kernel(self.distribution)
@@ -97,70 +106,49 @@ class BuildKernel(build_ext):
         self.kernel = os.environ.get("HEUN_KERNEL", "")
         if self.kernel not in ("", "require", "compiled", "pure"):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
+        for extension in self.extensions or []:
+            extension.optional = self.kernel not in ("require", "compiled")
         self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})
-        self.cython_c_in_temp = True
-        self.headers = Path(self.build_temp, "headers")
-        self.cython_include_dirs = [str(self.headers)]
-        self.folders = [Path(self.build_lib) / FOLDER]
-        if self.inplace:
-            self.folders.append(FOLDER)
+        self.generated = Path(self.build_temp, "generated")
+        self.cython_include_dirs = [str(self.generated)]
         if self.kernel == "pure":
-            for extension in self.extensions:
-                self.forget(extension)
+            self.forget()
             self.extensions = []
 
-    def forget(self, extension: Extension, but: str = "") -> None:
+    def forget(self, but: str = "") -> None:
         """Remove what earlier builds left: it would be packed beside a newer source, or imported in its place.
 
-        A file for one version of Python alone comes before one for all, whichever is newer.
+        A file for one version of Python alone comes before one for all, whichever is newer; and once each of the
+        kernel's modules was compiled by itself.
         """
-        name = extension.name.rpartition(".")[2]
-        for folder in self.folders:
-            for file in folder.glob(f"{name}.*"):
+        for folder in [Path(self.build_lib) / FOLDER, *([FOLDER] if self.inplace else [])]:
+            for file in folder.glob("*"):
                 if file.suffix in (".so", ".pyd") and file.name != but:
                     file.unlink()
 
-    def build_extensions(self) -> None:
-        flags: tuple[str, ...] = MSVC_FLAGS if self.compiler.compiler_type == "msvc" else GNU_FLAGS
-        if self.sanitized:
-            flags = SANITIZED_FLAGS
-        headers.write(FOLDER, self.headers)
-        for extension in self.extensions:
-            more = GNU_FLAGS_OF.get(extension.name.rpartition(".")[2], ()) if flags == GNU_FLAGS else ()
-            extension.extra_compile_args = [*flags, *more]
-            extension.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
-            extension.optional = self.kernel not in ("require", "compiled")
-            self.forget(extension, but=Path(self.get_ext_fullpath(extension.name)).name)
-            if extension.name.endswith(f".{KEEPER}"):
-                extension.define_macros.append(("HEUN_SOURCES", digest(str(FOLDER))))
-                self.forget(extension)  # whatever was edited, it holds the digest of it all
-        super().build_extensions()
-        if not self.is_compiled():  # compiled modules call each other as C functions: all of them, or none
-            for extension in self.extensions:
-                self.forget(extension)
-
-    def is_older_than_headers(self, ext: Extension) -> bool:
-        """Whether a header changed since a module was compiled: Cython looks for those beside the sources alone."""
-        compiled = Path(self.get_ext_fullpath(ext.name))
-        last = max(path.stat().st_mtime_ns for path in self.headers.rglob("*.pxd"))
-        return not compiled.exists() or compiled.stat().st_mtime_ns < last
-
     def build_extension(self, ext: Extension) -> None:
-        if self.given_up:  # the others would not be used
-            return
-        self.force = self.is_older_than_headers(ext)
+        msvc = self.compiler.compiler_type == "msvc"
+        flags = SANITIZED_FLAGS if self.sanitized else MSVC_FLAGS if msvc else QUICK_FLAGS if self.quick else GNU_FLAGS
+        ext.extra_compile_args = [*flags]
+        ext.extra_link_args = [flag for flag in flags if flag.startswith("-fsanitize=")]
+        self.forget(but=Path(self.get_ext_fullpath(ext.name)).name)
+        say(QUICKLY if self.quick else COMPILES)
+        self.force = True  # whether what lies there was made with these flags nobody knows
         try:
+            ext.sources = [str(one_module.write(FOLDER, self.generated))]
+            gc.disable()  # Cython makes a tree of millions of objects, in which there is no garbage
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
-            if not ext.optional:
+            self.forget()
+            if self.kernel in ("require", "compiled"):
                 raise
-            self.given_up = True
-            print(f"heun: {ext.name} is not compiled, the kernel's plain files will run: {reason}", file=sys.stderr)
+            say(PLAIN.format(reason=str(reason).strip().partition("\n")[0]))
+        finally:
+            gc.enable()
 
     def is_compiled(self) -> bool:
-        """Whether the build tree holds every module of the kernel in compiled form."""
-        files = [Path(self.get_ext_fullpath(extension.name)) for extension in self.extensions]
-        return bool(files) and all(file.exists() for file in files)
+        """Whether the build tree holds the compiled kernel."""
+        return bool(self.extensions) and all(Path(self.get_ext_fullpath(e.name)).exists() for e in self.extensions)
 
 
 class Wheel(bdist_wheel):
@@ -198,6 +186,7 @@ def main(words: list[str]) -> None:
     """Compile in place; a failure is one, unless HEUN_KERNEL says otherwise."""
     os.environ.setdefault("HEUN_KERNEL", "require")
     BuildKernel.sanitized = "--sanitize" in words
+    BuildKernel.quick = "--quick" in words
     setup(script_args=["build_ext", "--inplace"])
 
 

@@ -44,7 +44,7 @@ def kappa_of(q: Quaternion, c: Quaternion) -> Vec3:
     return scaled(1.0 / (q.w * c.w + dot(v, w)), turn)
 
 
-def turned_by(kappa: Vec3, c: Quaternion) -> Quaternion:
+def turn_quaternion(kappa: Vec3, c: Quaternion) -> Quaternion:
     """c turned by kappa: (1, kappa) c / sqrt(1 + kappa^2)."""
     w: Vec3 = Vec3(c.x, c.y, c.z)
     v: Vec3 = add_cross(add_scaled(w, c.w, kappa), kappa, w)
@@ -114,7 +114,7 @@ def leave_chart(
         if body.ball:
             at: cython.Py_ssize_t = body.attitude_at
             kappa: Vec3 = vector_at(x, at)
-            q: Quaternion = turned_by(kappa, centre(attitude, y, at))
+            q: Quaternion = turn_quaternion(kappa, centre(attitude, y, at))
             x[at] = q.w
             x[at + 1] = q.x
             x[at + 2] = q.y

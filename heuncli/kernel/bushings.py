@@ -77,7 +77,7 @@ def moment_along(phi: Vec3, gamma: Vec3, dphi: Vec3, dgamma: Vec3) -> Vec3:
 # What it does
 
 
-def times(k: Vec3, x: Vec3) -> Vec3:
+def multiply_components(k: Vec3, x: Vec3) -> Vec3:
     """Component by component."""
     return Vec3(k.x * x.x, k.y * x.y, k.z * x.z)
 
@@ -95,8 +95,8 @@ def bushing_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given
     rate: Vec3 = rotate_back(T, motion)
     if load.a == load.b:
         rate = Vec3(0.0, 0.0, 0.0)
-    gamma: Vec3 = sub(given, times(load.stiffnesses, load.strain))
-    drag: Vec3 = times(load.resistances, rate)
+    gamma: Vec3 = sub(given, multiply_components(load.stiffnesses, load.strain))
+    drag: Vec3 = multiply_components(load.resistances, rate)
     load.rate = norm(rate)
     acts: Vec3
     if load.kind == BUSHING_SHIFT:
@@ -118,7 +118,7 @@ def bushing_load(scene: cython.pointer[Scene], load: cython.pointer[Load], given
 def bushing_energy(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
     """1/2 x'Kx + the areas under the tables, less what a preload has given, of x = d or phi [J]."""
     x: Vec3 = strain_of(scene, load)
-    found: cython.double = 0.5 * dot(x, times(load.stiffnesses, x)) - dot(load.vector, x)
+    found: cython.double = 0.5 * dot(x, multiply_components(load.stiffnesses, x)) - dot(load.vector, x)
     if load.x.count:
         found += area_in(scene.programs, load.x, x.x)
     if load.y.count:

@@ -46,7 +46,7 @@ def cam_of(scene: cython.pointer[Scene], row: cython.pointer[Closure], slope: cy
     return CamStance(e, g, sub(C, O), w, h, slope)
 
 
-def over(a: cython.double, b: cython.double) -> cython.double:
+def divide_or_nan(a: cython.double, b: cython.double) -> cython.double:
     """a / b."""
     return a / b if b != 0.0 else NAN
 
@@ -61,11 +61,11 @@ def contact_of(row: cython.pointer[Closure], cam: CamStance) -> CamContact:
         if row.swings:
             swept = add_scaled(swept, -cam.slope, cross(cam.g, k))
         top: cython.double = cam.slope * dot(cam.h, cam.w) - dot(cam.h, cross(cam.e, cam.C))
-        return CamContact(scaled(over(top, dot(cam.h, swept)), k), cam.h)
+        return CamContact(scaled(divide_or_nan(top, dot(cam.h, swept)), k), cam.h)
     n = cross(cam.e, sub(scaled(cam.slope, cam.w), cross(cam.e, cam.C)))
     if row.radius == 0.0:
         return CamContact(zero, n)
-    return CamContact(scaled(-over(row.radius, norm(n)), n), n)
+    return CamContact(scaled(-divide_or_nan(row.radius, norm(n)), n), n)
 
 
 def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cython.void:
@@ -77,7 +77,7 @@ def cam_part(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyth
     u_b: cython.double = scene.freedoms[row.freedom_b].u
     w: Vec3 = add_cross(cam.w, cam.g, there.beside) if row.swings else cam.w
     row.Q = add(place_of(scene, row.b, row.q), there.beside)
-    row.f = scaled(over(1.0, dot(there.n, w)), there.n)
+    row.f = scaled(divide_or_nan(1.0, dot(there.n, w)), there.n)
     row.m = Vec3(0.0, 0.0, 0.0)
     row.gap = scene.freedoms[row.freedom_b].q - lift.r.x - row.length
     row.rate = u_b - lift.slope.x * u
@@ -120,7 +120,7 @@ def cam_along(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> Row
         dw = add_cross(add_cross(dw, d.g, there.beside), cam.g, turned.beside)
     work: cython.double = dot(there.n, w)
     change: cython.double = dot(turned.n, w) + dot(there.n, dw)
-    f: Vec3 = scaled(over(1.0, work), add_scaled(turned.n, -over(change, work), there.n))
+    f: Vec3 = scaled(divide_or_nan(1.0, work), add_scaled(turned.n, -divide_or_nan(change, work), there.n))
     Q: Vec3 = add(point_along(scene, row.b, row.q).x, turned.beside)
     return RowTangent(Q, f, Vec3(0.0, 0.0, 0.0), rate, -bent)
 
@@ -150,8 +150,8 @@ def contact_along(row: cython.pointer[Closure], cam: CamStance, there: CamContac
     if row.radius == 0.0:
         return CamContact(there.beside, n)
     size: cython.double = norm(there.n)
-    along: cython.double = over(dot(there.n, n), size * size)
-    return CamContact(scaled(-over(row.radius, size), add_scaled(n, -along, there.n)), n)
+    along: cython.double = divide_or_nan(dot(there.n, n), size * size)
+    return CamContact(scaled(-divide_or_nan(row.radius, size), add_scaled(n, -along, there.n)), n)
 
 
 def face_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, d: CamStance) -> CamContact:
@@ -172,6 +172,6 @@ def face_along(row: cython.pointer[Closure], cam: CamStance, there: CamContact, 
         dswept = add_scaled(dswept, -cam.slope, add_cross(cross(d.g, k), cam.g, dk))
     bottom: cython.double = dot(cam.h, swept)
     dbottom: cython.double = dot(d.h, swept) + dot(cam.h, dswept)
-    s: cython.double = over(top, bottom)
-    ds: cython.double = over(dtop - s * dbottom, bottom)
+    s: cython.double = divide_or_nan(top, bottom)
+    ds: cython.double = divide_or_nan(dtop - s * dbottom, bottom)
     return CamContact(add_scaled(scaled(ds, k), s, dk), d.h)

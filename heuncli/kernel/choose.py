@@ -1,13 +1,21 @@
 """The one door to the kernel from outside: its modules, in the form chosen for this process (form.py).
 
 Import them from here (`from heuncli.kernel.choose import steps`), never directly: the choice has to stand before the
-first of them is loaded.
+first of them is loaded. Compiled they are one module, under each of these names; what only declares is plain anyway.
 """
 
 from __future__ import annotations
 
-from heuncli.kernel.form import KERNEL  # isort: split
+from typing import TYPE_CHECKING
 
-from heuncli.kernel import enclosure, expressions, integration, jets, scene, steps, structs, workspace
+from heuncli.kernel import scene, structs
+from heuncli.kernel.form import KERNEL
+
+if TYPE_CHECKING or KERNEL == "pure":
+    from heuncli.kernel import enclosure, expressions, integration, jets, steps, workspace
+else:
+    from heuncli.kernel import compiled
+
+    enclosure = expressions = integration = jets = steps = workspace = compiled
 
 __all__ = ["KERNEL", "enclosure", "expressions", "integration", "jets", "scene", "steps", "structs", "workspace"]

@@ -202,11 +202,11 @@ def measure_by(run: cython.pointer[Run], x: cython.p_double) -> cython.void:
     for b in range(run.group_count):
         if b != run.energy_group:
             group: cython.pointer[Group] = cython.address(run.groups[b])
-            newton.reach = farthest(run, x, group.coordinates, group.rates, newton.reach)
-            newton.rate = farthest(run, x, group.rates, group.end, newton.rate)
+            newton.reach = find_largest_by_weight(run, x, group.coordinates, group.rates, newton.reach)
+            newton.rate = find_largest_by_weight(run, x, group.rates, group.end, newton.rate)
 
 
-def farthest(
+def find_largest_by_weight(
     run: cython.pointer[Run], x: cython.p_double, begin: cython.int, end: cython.int, found: cython.double
 ) -> cython.double:
     """The largest of some components by their weights, or what is given; what is no number counts."""
@@ -312,8 +312,8 @@ def size_of_step(of: cython.pointer[Collocation], run: cython.pointer[Run]) -> c
         for b in range(run.group_count):
             if b != run.energy_group:
                 group: cython.pointer[Group] = cython.address(run.groups[b])
-                moved = farthest(run, newton.step[k], group.coordinates, group.rates, moved)
-                found = farthest(run, newton.step[k], group.rates, group.end, found)
+                moved = find_largest_by_weight(run, newton.step[k], group.coordinates, group.rates, moved)
+                found = find_largest_by_weight(run, newton.step[k], group.rates, group.end, found)
     if found > 0.0 or found != found:
         found = found / newton.rate if newton.rate > 0.0 else 1e300
     moved = moved / newton.reach

@@ -35,7 +35,7 @@ if not cython.compiled:
 
     # Halvings of a step, down to the rounding of its instants; into how many a part is divided to be looked at; parts
     # looked at, before rounding alone is what is in doubt.
-    HALVINGS, POINTS, MOST_LOOKS = 46, 8, 400
+    HALVINGS, POINTS, MOST_MARGIN_LOOKS = 46, 8, 400
 
 
 # Margins
@@ -256,7 +256,7 @@ def first_contact(
     while top >= 0:
         looks += 1
         middle = 0.5 * (x + ends[top])
-        if top == HALVINGS or looks > MOST_LOOKS or middle <= x or middle >= ends[top]:
+        if top == HALVINGS or looks > MOST_MARGIN_LOOKS or middle <= x or middle >= ends[top]:
             stand_within(scene, method, run, ends[top], doubt)
             if is_above(scene, run):
                 return x
@@ -303,7 +303,7 @@ def is_clear(
         if is_above(scene, run):
             return False
         for k in range(scene.contact_count):
-            follow(scene, cython.address(scene.contacts[k]), i)
+            note_margin(scene, cython.address(scene.contacts[k]), i)
     for k in range(scene.contact_count):
         contact: cython.pointer[Contact] = cython.address(scene.contacts[k])
         if contact.highest + 0.25 * contact.bent <= contact.level:
@@ -314,7 +314,7 @@ def is_clear(
     return True
 
 
-def follow(scene: cython.pointer[Scene], contact: cython.pointer[Contact], i: cython.int) -> cython.void:
+def note_margin(scene: cython.pointer[Scene], contact: cython.pointer[Contact], i: cython.int) -> cython.void:
     """The i-th of equidistant points is seen: the largest margin and rate, and their largest second differences."""
     x: cython.double = margin(scene, contact)
     rate: cython.double = contact.sense * scene.closures[contact.row].rate

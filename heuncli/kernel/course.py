@@ -155,7 +155,7 @@ def driven_span(scene: cython.pointer[Scene], i: cython.Py_ssize_t) -> Span:
     return Span(shifted, given.rate, given.second)
 
 
-def derivatives_over(
+def bound_derivatives(
     scene: cython.pointer[Scene],
     course: cython.pointer[Course],
     ranges: cython.pointer[Span],

@@ -66,7 +66,7 @@ if not cython.compiled:
         plus,
         point,
         root,
-        scaled,
+        scale_bounds,
         sine,
         squared,
         tangent,
@@ -143,7 +143,7 @@ def enclose_closely(programs: cython.pointer[Programs], program: Program) -> Spa
     if is_nothing(whole.value) or is_nothing(there.value):
         return whole
     away: Bounds = minus(programs.ranges[0].value, programs.middles[0].value)
-    square: Bounds = scaled(0.5, squared(away))
+    square: Bounds = scale_bounds(0.5, squared(away))
     rounding: cython.double = there.value.high - there.value.low  # as it is met elsewhere, too
     centre: Bounds = Bounds(there.value.low - rounding, there.value.high + rounding)
     first: Bounds = plus(centre, times(whole.rate, away))
@@ -319,7 +319,7 @@ def span_of_two(op: cython.int, a: Span, b: Span) -> Span:
 
 def span_of_product(a: Span, b: Span) -> Span:
     """(a b)' = a' b + a b',  (a b)'' = a'' b + 2 a' b' + a b''."""
-    crossed: Bounds = times(scaled(2.0, a.rate), b.rate)
+    crossed: Bounds = times(scale_bounds(2.0, a.rate), b.rate)
     return Span(
         exact_times(a.value, b.value),
         plus(times(a.rate, b.value), times(a.value, b.rate)),
@@ -333,7 +333,7 @@ def span_of_quotient(a: Span, b: Span) -> Span:
     if is_nothing(q):
         return no_span()
     rate: Bounds = over(minus(a.rate, times(q, b.rate)), b.value)
-    second: Bounds = minus(minus(a.second, times(scaled(2.0, rate), b.rate)), times(q, b.second))
+    second: Bounds = minus(minus(a.second, times(scale_bounds(2.0, rate), b.rate)), times(q, b.second))
     return Span(q, rate, over(second, b.value))
 
 
@@ -346,7 +346,7 @@ def span_of_power(a: Span, b: Span) -> Span:
     if stands_still(a) and stands_still(b):
         return still(y)
     if stands_still(b) and n == b.value.high:
-        df: Bounds = scaled(n, to_number(a.value, n - 1.0)) if n != 0.0 else point(0.0)
+        df: Bounds = scale_bounds(n, to_number(a.value, n - 1.0)) if n != 0.0 else point(0.0)
         c: Bounds = times(point(n), minus(point(n), point(1.0)))
         return chained(a, y, df, times(c, to_number(a.value, n - 2.0)) if not is_zero(c) else c)
     if not a.value.low > 0.0:
@@ -355,7 +355,7 @@ def span_of_power(a: Span, b: Span) -> Span:
     relative: Bounds = over(a.rate, a.value)
     rate: Bounds = plus(times(b.rate, w), over(times(b.value, a.rate), a.value))
     inner: Bounds = minus(a.second, over(squared(a.rate), a.value))
-    second: Bounds = plus(times(b.second, w), times(scaled(2.0, b.rate), relative))
+    second: Bounds = plus(times(b.second, w), times(scale_bounds(2.0, b.rate), relative))
     second = plus(second, over(times(b.value, inner), a.value))
     return Span(y, times(y, rate), times(y, plus(squared(rate), second)))
 
@@ -366,7 +366,7 @@ def span_of_angle(value: Bounds, y: Span, x: Span) -> Span:
     rate: Bounds = known(over(minus(times(x.value, y.rate), times(y.value, x.rate)), square))
     radial: Bounds = plus(times(y.value, y.rate), times(x.value, x.rate))
     second: Bounds = minus(times(x.value, y.second), times(y.value, x.second))
-    return Span(value, rate, known(over(minus(second, times(scaled(2.0, rate), radial)), square)))
+    return Span(value, rate, known(over(minus(second, times(scale_bounds(2.0, rate), radial)), square)))
 
 
 def span_of_distance(a: Span, b: Span) -> Span:
@@ -414,10 +414,10 @@ def span_of_piecewise(op: cython.int, u: Span, n: cython.int) -> Span:
     """-u, the whole power n, |u|, and its jumps, between which it stands still."""
     a: Bounds = u.value
     if op == POWER:
-        df: Bounds = scaled(n, a if n == 2 else to_whole(a, n - 1))
-        return chained(u, to_whole(a, n), df, scaled(n * (n - 1), point(1.0) if n == 2 else to_whole(a, n - 2)))
+        df: Bounds = scale_bounds(n, a if n == 2 else to_whole(a, n - 1))
+        return chained(u, to_whole(a, n), df, scale_bounds(n * (n - 1), point(1.0) if n == 2 else to_whole(a, n - 2)))
     elif op == NEG or (op == ABS and a.high < 0.0):
-        return turned(u)
+        return negate_span(u)
     elif op == ABS:
         return u if a.low >= 0.0 else Span(magnitude(a), hull(u.rate, negative(u.rate)), anything())
     low: cython.double = 1.0 if a.low >= 0.0 else 0.0
@@ -428,7 +428,7 @@ def span_of_piecewise(op: cython.int, u: Span, n: cython.int) -> Span:
     return still(point(low)) if low == high else loose(Bounds(low, high))
 
 
-def turned(u: Span) -> Span:
+def negate_span(u: Span) -> Span:
     """-u."""
     return Span(negative(u.value), negative(u.rate), negative(u.second))
 
@@ -448,10 +448,10 @@ def span_of_circular(op: cython.int, u: Span) -> Span:
     elif op == TAN:
         f = tangent(a)
         df = plus(one, squared(f))
-        return chained(u, f, df, times(scaled(2.0, f), df))
+        return chained(u, f, df, times(scale_bounds(2.0, f), df))
     elif op == ATAN:
         df = over(one, plus(one, squared(a)))
-        return chained(u, arctangent(a), df, times(times(scaled(-2.0, a), df), df))
+        return chained(u, arctangent(a), df, times(times(scale_bounds(-2.0, a), df), df))
     a = meet(a, Bounds(-1.0, 1.0))
     if is_nothing(a):
         return no_span()
@@ -476,7 +476,7 @@ def span_of_exponential(op: cython.int, u: Span) -> Span:
     elif op == TANH:
         f = hyperbolic_tangent(a)
         df = minus(point(1.0), squared(f))
-        return chained(u, f, df, times(scaled(-2.0, f), df))
+        return chained(u, f, df, times(scale_bounds(-2.0, f), df))
     elif op == EXP:
         f = exponential_of(a)
         return chained(u, f, f, f)
@@ -589,7 +589,7 @@ def cubic(c: cython.p_double, i: cython.Py_ssize_t, h: Bounds) -> Span:
             value = with_extreme(value, c, i, h, q / (3.0 * c[i + 3]))
             if q != 0.0:
                 value = with_extreme(value, c, i, h, c[i + 1] / q)
-    bend: Bounds = plus(scaled(2.0, point(c[i + 2])), times(scaled(6.0, point(c[i + 3])), h))
+    bend: Bounds = plus(scale_bounds(2.0, point(c[i + 2])), times(scale_bounds(6.0, point(c[i + 3])), h))
     second: cython.double = fabs(c[i + 2]) * m
     third: cython.double = fabs(c[i + 3]) * m * m
     slope = widened(slope, fabs(c[i + 1]) + 2.0 * second + 3.0 * third)
@@ -606,7 +606,7 @@ def cubic_at(c: cython.p_double, i: cython.Py_ssize_t, h: cython.double) -> Boun
 def slope_at(c: cython.p_double, i: cython.Py_ssize_t, h: cython.double) -> Bounds:
     """Bounds of its slope at one h."""
     x: Bounds = point(h)
-    inner: Bounds = plus(times(scaled(3.0, point(c[i + 3])), x), scaled(2.0, point(c[i + 2])))
+    inner: Bounds = plus(times(scale_bounds(3.0, point(c[i + 3])), x), scale_bounds(2.0, point(c[i + 2])))
     return plus(times(inner, x), point(c[i + 1]))
 
 
@@ -675,11 +675,11 @@ def span_on_branch(programs: cython.pointer[Programs], k: cython.int, at: cython
     if may_change(programs, at, branch, a.value, b.value):
         programs.doubt[k] = 1
     if op == ABS:
-        return b if branch > 0.0 else turned(b)
+        return b if branch > 0.0 else negate_span(b)
     elif op == MIN or op == MAX:
         return b if branch == 1.0 else a
     elif op == ATAN2:
-        return turned(angle_above(turned(a), b)) if branch == 0.0 else angle_above(a, b)
+        return negate_span(angle_above(negate_span(a), b)) if branch == 0.0 else angle_above(a, b)
     elif op == TABLE:
         number: cython.int = programs.code[at].argument
         return span_of_piece(programs.tables[number], table_at(programs, at + 1, number), branch, b)

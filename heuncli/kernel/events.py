@@ -18,7 +18,7 @@ if not cython.compiled:
     from math import fabs
 
     from heuncli.kernel.algebra import norm
-    from heuncli.kernel.course import derivatives_over, instant, range_over, set_time, stand_at
+    from heuncli.kernel.course import bound_derivatives, instant, range_over, set_time, stand_at
     from heuncli.kernel.enclosure import enclose, enclose_closely
     from heuncli.kernel.evaluator import value
     from heuncli.kernel.intervals import anything, magnitude
@@ -32,7 +32,7 @@ if not cython.compiled:
 
     # What a stretch of time holds, and what bounds leave open.
     NOTHING, TURNS, UNSEEN, UNDECIDED, CLEAR, BRANCH_IN_DOUBT, VALUE_IN_DOUBT, PASSED = range(8)
-    AS_HELD, TURNED, OPEN = range(3)  # branches at an instant
+    AS_HELD, BRANCH_TURNED, OPEN = range(3)  # branches at an instant
     # Divisions of a stretch after which a value is taken for seen, a millionth of the step; parts in which a load's
     # peak is looked for; parts looked at for values that bounds do not settle, and in all.
     LOOKS, PARTS, MOST_LOOKS, MOST_PARTS = 20, 60, 1000, 4000
@@ -184,12 +184,12 @@ def doubt_over(
         there = watched(scene, watch)
         if out_of_sight(scene, watch, Bounds(there, there), watch.scale):
             found = UNSEEN
-        elif found == CLEAR and out_of_sight(scene, watch, closer(scene, course, watch, x0, x1), watch.scale):
+        elif found == CLEAR and out_of_sight(scene, watch, tighten_bounds(scene, course, watch, x0, x1), watch.scale):
             found = VALUE_IN_DOUBT
     return BRANCH_IN_DOUBT if moving_doubt(scene, course, x0) else found
 
 
-def closer(
+def tighten_bounds(
     scene: cython.pointer[Scene],
     course: cython.pointer[Course],
     watch: cython.pointer[Watch],
@@ -200,9 +200,9 @@ def closer(
     span: Span
     middle: cython.double = 0.5 * (x0 + x1)
     range_over(scene, course, scene.programs.middles, middle, middle)
-    derivatives_over(scene, course, scene.programs.middles, middle, middle)
+    bound_derivatives(scene, course, scene.programs.middles, middle, middle)
     set_time(scene.programs, instant(course, x0), instant(course, x1))
-    derivatives_over(scene, course, scene.programs.ranges, x0, x1)
+    bound_derivatives(scene, course, scene.programs.ranges, x0, x1)
     span = enclose_closely(scene.programs, watch.program)
     return span.second if watch.curved else span.value
 
@@ -306,9 +306,9 @@ def branches_at(scene: cython.pointer[Scene], course: cython.pointer[Course], x:
     for i in range(scene.held_count):
         course.turned[i] = course.before[i] if is_resting(course, i, x) else scene.programs.held[i]
         if course.turned[i] != course.before[i]:
-            found = TURNED
+            found = BRANCH_TURNED
             course.slot = i
-    if is_open(scene, course, x):
+    if is_branch_in_doubt(scene, course, x):
         found = OPEN
     take_branches(scene, course.before)
     return found
@@ -345,7 +345,7 @@ def jump_at(scene: cython.pointer[Scene], course: cython.pointer[Course]) -> cyt
     return found
 
 
-def is_open(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
+def is_branch_in_doubt(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
     """Whether bounds at x itself, wider than a point by the rounding of coordinates, leave the branches in doubt."""
     i: cython.Py_ssize_t
     wide: cython.double
@@ -388,7 +388,7 @@ def turns_at_once(scene: cython.pointer[Scene], course: cython.pointer[Course]) 
     """
     x: cython.double = scene.limits.leaving_first
     while x <= scene.limits.leaving_last:
-        if branches_at(scene, course, x) != TURNED:
+        if branches_at(scene, course, x) != BRANCH_TURNED:
             return x
         x = 10.0 * x
     return 0.0
@@ -408,7 +408,7 @@ def first_event(scene: cython.pointer[Scene], course: cython.pointer[Course]) ->
     course.crossed_by = -1.0
     course.rests_to = 0.0
     scale_watches(scene, course)
-    if scene.held_count and branches_at(scene, course, 0.0) == TURNED:
+    if scene.held_count and branches_at(scene, course, 0.0) == BRANCH_TURNED:
         x = turns_at_once(scene, course)
         course.event = 0.0
         if x == 0.0:
@@ -460,7 +460,7 @@ def look_at_turn(
     """
     if x1 - x0 <= course.finest:
         course.event = x1
-        return TURNS if branches_at(scene, course, x1) == TURNED else BRANCH_IN_DOUBT
+        return TURNS if branches_at(scene, course, x1) == BRANCH_TURNED else BRANCH_IN_DOUBT
     if branches_at(scene, course, x0) != OPEN:
         return BRANCH_IN_DOUBT
     course.event = beyond_rounding(scene, course, x0, x1)
@@ -468,7 +468,7 @@ def look_at_turn(
         if branches_at(scene, course, x0) != OPEN:
             return BRANCH_IN_DOUBT
         course.event = beyond_rounding(scene, course, x0, x1)
-    if branches_at(scene, course, course.event) != TURNED:
+    if branches_at(scene, course, course.event) != BRANCH_TURNED:
         return PASSED
     # not where it is certain, which would be late each time: where the margin itself is zero
     if not course.late:
@@ -502,7 +502,7 @@ def pass_over(
 def moves_off(scene: cython.pointer[Scene], course: cython.pointer[Course], x: cython.double) -> cython.bint:
     """Whether branches that were passed over up to x turn there: then the event is where their margin is zero."""
     course.rests_to = 0.0
-    if branches_at(scene, course, x) != TURNED:
+    if branches_at(scene, course, x) != BRANCH_TURNED:
         return False
     course.event = x if course.late else crossing_in(scene, course, course.rests_from, x, 0.0)
     return True

@@ -96,7 +96,7 @@ def stand_here(scene: cython.pointer[Scene], run: cython.pointer[Run]) -> cython
         counter: cython.pointer[Counter] = cython.address(scene.counters[i])
         if counter.track:
             continue
-        mark: Vec3 = seen_from(scene, counter.b, direction_of(scene, counter.a, across(counter.axis)))
+        mark: Vec3 = seen_from(scene, counter.b, direction_of(scene, counter.a, find_perpendicular(counter.axis)))
         branch.marks[3 * i] = mark.x
         branch.marks[3 * i + 1] = mark.y
         branch.marks[3 * i + 2] = mark.z
@@ -124,8 +124,8 @@ def measure_reach(scene: cython.pointer[Scene], branch: cython.pointer[Branch]) 
             shifts: cython.bint = i >= scene.freedom_count or scene.freedoms[i].kind == SHIFT
             own: cython.double = 1.0 / branch.length if shifts else 1.0
             bends: cython.bint = i >= scene.freedom_count or branch.bends[i] != 0
-            branch.travel[i] = farthest(scene, branch, own, False)
-            branch.reach[i] = farthest(scene, branch, own if bends else 0.0, True)
+            branch.travel[i] = find_largest_change(scene, branch, own, False)
+            branch.reach[i] = find_largest_change(scene, branch, own if bends else 0.0, True)
     scene.gravity = gravity
 
 
@@ -139,7 +139,7 @@ def is_linear(scene: cython.pointer[Scene], row: cython.pointer[Closure]) -> cyt
     return True
 
 
-def farthest(
+def find_largest_change(
     scene: cython.pointer[Scene], branch: cython.pointer[Branch], found: cython.double, bending: cython.bint
 ) -> cython.double:
     """The largest of the coordinates' changes in the answer found, or what is given; bending: of those that turn J."""
@@ -333,7 +333,7 @@ def carry_on(scene: cython.pointer[Scene], run: cython.pointer[Run], x: cython.p
             continue
         n: Vec3 = counter.axis
         w: Vec3 = Vec3(run.branch.marks[3 * i], run.branch.marks[3 * i + 1], run.branch.marks[3 * i + 2])
-        before: Vec3 = across(n)
+        before: Vec3 = find_perpendicular(n)
         now: Vec3 = seen_from(scene, counter.a, direction_of(scene, counter.b, w))
         angle = run.y[counter.at] + atan2(dot(n, cross(before, now)), dot(before, now))
         while x[counter.at] - angle > half:
@@ -345,7 +345,7 @@ def carry_on(scene: cython.pointer[Scene], run: cython.pointer[Run], x: cython.p
         x[scene.work_at] = run.y[scene.work_at] + (mechanical_energy(scene) - run.branch.energy)
 
 
-def across(n: Vec3) -> Vec3:
+def find_perpendicular(n: Vec3) -> Vec3:
     """A direction across another one."""
     if fabs(n.x) <= fabs(n.y) and fabs(n.x) <= fabs(n.z):
         return cross(n, Vec3(1.0, 0.0, 0.0))

@@ -2,27 +2,24 @@
 
 HEUN_KERNEL at run time:
 
-    unset                 compiled where all modules are, else plain
-    pure                  the plain .py files, also where compiled ones lie beside them
+    unset                 compiled where that is there, else plain
+    pure                  the plain .py files, also where the compiled module lies beside them
     compiled, require     compiled, or an error that says so
 
-Impure: reads HEUN_KERNEL; for the plain form it puts a finder into sys.meta_path.
+Impure: reads HEUN_KERNEL.
 """
 
 from __future__ import annotations
 
 import os
-import sys
-from importlib.machinery import EXTENSION_SUFFIXES, SOURCE_SUFFIXES, FileFinder, ModuleSpec, SourceFileLoader
+from importlib.machinery import EXTENSION_SUFFIXES
 
 from heuncli.errors import HeunError, Problem
-from heuncli.kernel.modules import MODULES
-from heuncli.kernel.sources import digest, newer_than_compiled
+from heuncli.kernel.modules import NAME
+from heuncli.kernel.sources import digest_code, digest_texts, newer_than
 
 TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from types import ModuleType
     from typing import Literal
 
 PACKAGE = __package__ or "heuncli.kernel"
@@ -37,61 +34,56 @@ class KernelError(HeunError):
     exit_code = 2
 
 
-class PlainFiles:
-    """A finder for sys.meta_path that sees the kernel's source files and not the compiled ones beside them."""
-
-    def __init__(self) -> None:
-        self.finder = FileFinder(FOLDER, (SourceFileLoader, SOURCE_SUFFIXES))
-
-    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
-        return self.finder.find_spec(name) if name.startswith(f"{PACKAGE}.") else None
+def find_compiled() -> str:
+    """The name of the compiled kernel's file, as Python would import it; empty where there is none."""
+    return next((f"{NAME}{suffix}" for suffix in EXTENSION_SUFFIXES if f"{NAME}{suffix}" in FILES), "")
 
 
-def is_built(name: str) -> bool:
-    """Whether a compiled form of the kernel's module lies beside its source."""
-    return any(f"{name}{suffix}" in FILES for suffix in EXTENSION_SUFFIXES)
+def refuse_leftovers() -> None:
+    """Raises KernelError for modules that an older heun compiled one by one: they would run in place of the plain files."""
+    left = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
+    if left:
+        message = f"compiled files of an older heun lie among the kernel's: {left[0]}, {len(left)} in all"
+        raise KernelError(Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew"))
 
 
-def edited_since_compiled() -> list[str]:
-    """Names of sources that were edited since the kernel was compiled; none where only their times look like it.
+def edited_since_compiled(compiled: str) -> list[str]:
+    """Names of modules whose code was edited since the kernel was compiled; none where only their times look like it.
 
     Only a checkout is looked at: what is installed is not edited, and the times of its files mean nothing.
     """
     if not os.path.exists(os.path.join(FOLDER, "..", "..", "pyproject.toml")):
         return []
-    newer = newer_than_compiled(FOLDER, FILES)
+    newer = newer_than(FOLDER, compiled)
     if not newer:
         return []
-    try:
-        from heuncli.kernel.memory import compiled_from  # it needs no other module of the kernel
-    except ImportError:  # compiled before there were digests
-        return newer
-    return newer if compiled_from() != digest(FOLDER) else []
+    from heuncli.kernel import compiled as kernel  # type: ignore[attr-defined]
+
+    if digest_texts(FOLDER) == kernel.TEXT_DIGEST:
+        return []
+    return [name for name in newer if digest_code(FOLDER, [name]) != {name: kernel.CODE_DIGESTS.get(name)}]
 
 
 def choose(wish: str) -> Literal["compiled", "pure"]:
-    """Which form runs for a value of HEUN_KERNEL. Raises KernelError for one that is unknown or cannot be had.
-
-    All modules are of one form: a compiled one calls its neighbours as C functions.
-    """
+    """Which form runs for a value of HEUN_KERNEL. Raises KernelError for one that is unknown or cannot be had."""
     if wish not in ("", "pure", "compiled", "require"):
         message = f"HEUN_KERNEL is '{wish}'; known: pure, compiled, require"
         raise KernelError(Problem("unknown-kernel", message, hint="unset it to let heun choose"))
-    missing = [name for name in MODULES if not is_built(name)]
-    if wish in ("compiled", "require") and missing:
-        message = f"HEUN_KERNEL={wish}, but this heun has no compiled kernel (missing: {', '.join(missing)})"
+    compiled = find_compiled()
+    refuse_leftovers()
+    if wish in ("compiled", "require") and not compiled:
+        message = f"HEUN_KERNEL={wish}, but this heun has no compiled kernel"
         hint = "install again where a C compiler is at hand, or unset HEUN_KERNEL to run the slower plain one"
         raise KernelError(Problem("kernel-not-compiled", message, hint=hint))
-    if missing or wish == "pure":
+    if not compiled or wish == "pure":
         return "pure"
-    if edited := edited_since_compiled():
+    if edited := edited_since_compiled(compiled):
+        named = ", ".join(f"{name}.py" for name in edited[:MOST_NAMED])
         more = f" and {len(edited) - MOST_NAMED} more" if len(edited) > MOST_NAMED else ""
-        message = f"the compiled kernel is older than its text: {', '.join(edited[:MOST_NAMED])}{more} changed since"
+        message = f"the compiled kernel is older than its text: {named}{more} changed since"
         hint = "compile it again with: python -m heuncli.build; or run the slower plain one: HEUN_KERNEL=pure"
         raise KernelError(Problem("stale-kernel", message, hint=hint))
     return "compiled"
 
 
 KERNEL = choose(os.environ.get("HEUN_KERNEL", ""))
-if KERNEL == "pure":
-    sys.meta_path.insert(0, PlainFiles())

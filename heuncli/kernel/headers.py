@@ -1,11 +1,11 @@
-"""The kernel's headers for Cython, made of its Python texts where it is compiled: a declaration stands nowhere twice.
+"""What Cython has to know of the kernel, read from its Python texts: a declaration stands nowhere twice (one_module.py).
 
-What a module says in Python, and what its header declares of it:
+What a module says in Python, and what that is for C:
 
-    from heuncli.kernel.tree import push    the same for C; from `math` and libm.py: the function of C's library. Of
-                                            modules that are compiled what counts is the block for plain Python
+    from math import sqrt                   in the block for plain Python: the function of C's library; so from libm.py.
+                                            What is imported from the kernel is there, in the one module
     GUIDE, DOT = range(2)                   in that block: an enumeration
-    SAFETY = 0.9                            at the top: a number of C, set where the module is loaded
+    SAFETY = 0.9                            at the top: a number of C
     class Body(Struct)                      a struct (structs.py), field by field
     def push(...)                           a C function, if it gives a C type or takes a pointer or a struct; where no
                                             object of Python is in it, without exceptions and without the interpreter's
@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from functools import cache
-from pathlib import Path
 
 from heuncli.kernel.modules import DECLARED, MODULES
 
@@ -28,55 +26,24 @@ NUMBERS = {"int": "int", "float": "double", "bool": "bint", "Size": "Py_ssize_t"
 OBJECTS = ("bytearray", "dict", "list", "tuple")
 EXTENSION_TYPES = ("Expressions", "Integration", "Memory", "Workspace")
 POINTERS = {"p_void": "void *", "p_char": "char *", "p_int": "int *", "p_double": "double *", "pp_double": "double **"}
-# What the build gives as a macro, as text: where it does not, the text is "none".
-GIVEN = '''cdef extern from *:
-    """
-    #ifndef {name}
-    #define {name} none
-    #endif
-    #define HEUN_TEXT_OF(name) #name
-    #define HEUN_TEXT(name) HEUN_TEXT_OF(name)
-    static const char *given_{name} = HEUN_TEXT({name});
-    """
-    const char *{name} "given_{name}"
-'''
 
 
-def header(folder: Path, name: str) -> str:
-    """The header of a module of the kernel, whose text lies in the folder."""
-    module = ast.parse((folder / f"{name}.py").read_text(encoding="utf-8"))
-    declared = name in DECLARED
-    structs = known_structs(folder)
-    plain = module.body if declared else plain_block(module)
+def declare(modules: dict[str, ast.Module]) -> str:
+    """The declarations of all modules of the kernel: enumerations, structs, extension types."""
+    structs = known_structs(modules)
+    types = [node for name in MODULES for node in modules[name].body if isinstance(node, ast.ClassDef)]
     parts = [
-        imports(plain),
-        [text for node in plain if isinstance(node, ast.Assign) for text in given(node)],
-        enumeration(plain),
-        [f"cdef double {target}\n" for target in floats(module)],
-        [struct(node, structs) for node in module.body if isinstance(node, ast.ClassDef) and node.name in structs],
-        functions(module, structs, inline=declared),
+        *(enumeration(module.body if name in DECLARED else plain_block(module)) for name, module in modules.items()),
+        [struct(node, structs) for name in DECLARED for node in modules[name].body if is_struct(node, structs)],
+        [f"cdef class {node.name}\n" for node in types],
+        [extension_type(node, structs) for node in types],
     ]
-    if not declared:
-        parts.append([extension_type(node, structs) for node in module.body if isinstance(node, ast.ClassDef)])
-    return "\n".join(["# Made of " + f"{name}.py by headers.py.\n", *("".join(part) for part in parts if part)])
+    return "\n".join("".join(part) for part in parts if part)
 
 
-def write(folder: Path, to: Path) -> None:
-    """Write all headers into a folder as Cython finds them there, below their package; what says the same stays."""
-    package = to.joinpath(*PACKAGE.split("."))
-    package.mkdir(parents=True, exist_ok=True)
-    texts = {package / f"{name}.pxd": header(folder, name) for name in (*DECLARED, *MODULES)}
-    texts |= {place / "__init__.pxd": "" for place in (package, package.parent)}
-    for path, text in texts.items():
-        if not path.exists() or path.read_text(encoding="utf-8") != text:
-            path.write_text(text, encoding="utf-8")
-
-
-@cache
-def known_structs(folder: Path) -> frozenset[str]:
+def known_structs(modules: dict[str, ast.Module]) -> frozenset[str]:
     """The names of all structs of the kernel."""
-    modules = [ast.parse((folder / f"{name}.py").read_text(encoding="utf-8")) for name in DECLARED]
-    return frozenset(node.name for module in modules for node in module.body if isinstance(node, ast.ClassDef))
+    return frozenset(node.name for name in DECLARED for node in modules[name].body if isinstance(node, ast.ClassDef))
 
 
 def plain_block(module: ast.Module) -> list[ast.stmt]:
@@ -88,32 +55,21 @@ def plain_block(module: ast.Module) -> list[ast.stmt]:
 # Imports and constants
 
 
-def imports(block: list[ast.stmt]) -> list[str]:
-    """The imports from modules that have headers, and from C's library; in their order, the library's last."""
-    own, library = [], set()
-    for node in block:
-        if isinstance(node, ast.ImportFrom):
-            names = [alias.name for alias in node.names]
-            origin = (node.module or "").removeprefix(f"{PACKAGE}.")
-            if origin in ("math", "libm"):
-                library.update(names)
-            elif origin in (*DECLARED, *MODULES):
-                own.append(f"from {PACKAGE}.{origin} cimport {', '.join(names)}\n")
-    return own + ([f"from libc.math cimport {', '.join(sorted(library))}\n"] if library else [])
-
-
-def given(node: ast.Assign) -> list[str]:
-    """Of bytes the text that the build gives in their place."""
-    if isinstance(node.value, ast.Constant) and isinstance(node.value.value, bytes):
-        return [GIVEN.format(name=ast.unparse(node.targets[0]))]
-    return []
+def library(block: list[ast.stmt]) -> list[str]:
+    """The names that a module takes of C's library."""
+    return [
+        alias.name
+        for node in block
+        if isinstance(node, ast.ImportFrom) and node.module in ("math", f"{PACKAGE}.libm")
+        for alias in node.names
+    ]
 
 
 def enumeration(block: list[ast.stmt]) -> list[str]:
     """The whole numbers of a block, by their names."""
     lines = []
     for node in block:
-        if isinstance(node, ast.Assign) and not given(node):
+        if isinstance(node, ast.Assign):
             target, value = node.targets[0], node.value
             names = [ast.unparse(part) for part in (target.elts if isinstance(target, ast.Tuple) else [target])]
             if isinstance(value, ast.Call) and ast.unparse(value.func) == "range":
@@ -124,12 +80,19 @@ def enumeration(block: list[ast.stmt]) -> list[str]:
     return ["cdef enum:\n", *(f"    {line}\n" for line in lines)] if lines else []
 
 
-def floats(module: ast.Module) -> list[str]:
-    """The names at the top that are numbers with a point."""
+def is_float(node: ast.stmt) -> bool:
+    """Whether a statement gives a name to a number with a point."""
+    return (
+        isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
+    )
+
+
+def floats(module: ast.Module) -> list[tuple[str, float]]:
+    """The names at the top that are numbers with a point, and these."""
     return [
-        ast.unparse(node.targets[0])
+        (ast.unparse(node.targets[0]), ast.literal_eval(node.value))
         for node in module.body
-        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
+        if is_float(node) and isinstance(node, ast.Assign)
     ]
 
 
@@ -176,8 +139,14 @@ def of(kind: str, name: str) -> str:
 # Structs and extension types
 
 
-def struct(node: ast.ClassDef, structs: frozenset[str]) -> str:
+def is_struct(node: ast.stmt, structs: frozenset[str]) -> bool:
+    """Whether a statement is a struct of the kernel."""
+    return isinstance(node, ast.ClassDef) and node.name in structs
+
+
+def struct(node: ast.stmt, structs: frozenset[str]) -> str:
     """A struct; a tuple of structs of one kind is an array."""
+    assert isinstance(node, ast.ClassDef)
     lines = [f"cdef struct {node.name}:\n"]
     for field in node.body:
         if isinstance(field, ast.AnnAssign):
@@ -205,16 +174,9 @@ def extension_type(node: ast.ClassDef, structs: frozenset[str]) -> str:
 # Functions
 
 
-def functions(module: ast.Module, structs: frozenset[str], inline: bool) -> list[str]:
-    """The C functions: their signatures, or all of them."""
-    found = []
-    for node in module.body:
-        if isinstance(node, ast.FunctionDef):
-            if inline:
-                found.append(inlined(node, structs))
-            else:
-                found += [f"{text}\n" for text in signature(node, structs)]
-    return found
+def inlined_functions(module: ast.Module, structs: frozenset[str]) -> list[str]:
+    """The whole functions of a module that is not compiled itself."""
+    return [inlined(node, structs) for node in module.body if isinstance(node, ast.FunctionDef)]
 
 
 def signature(node: ast.FunctionDef, structs: frozenset[str]) -> Iterator[str]:

@@ -226,7 +226,7 @@ def exact_times(a: Bounds, b: Bounds) -> Bounds:
     return Bounds(low if low < other else other, high if high > highest else highest)
 
 
-def scaled(s: cython.double, a: Bounds) -> Bounds:
+def scale_bounds(s: cython.double, a: Bounds) -> Bounds:
     """s a, for a number s."""
     return times(point(s), a)
 

@@ -16,7 +16,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import BodyTangent, Scene
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Tangent
-    from heuncli.kernel.tangent import change_along, stand_at
+    from heuncli.kernel.tangent import change_along, evaluate_base_state
     from heuncli.kernel.tangent_closures import row_along
     from heuncli.kernel.tangent_motion import move_along
 
@@ -28,7 +28,7 @@ def find_jacobian(
     i: cython.Py_ssize_t
     j: cython.Py_ssize_t
     n: cython.Py_ssize_t = tangent.n
-    stand_at(scene, t, y, tangent.at)
+    evaluate_base_state(scene, t, y, tangent.at)
     for j in range(n):
         scene.along[j] = 0.0
         tangent.beside[j] = 0.0

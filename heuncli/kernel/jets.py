@@ -126,7 +126,7 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
             height -= 1
             if slopes or op < MIN or jets[height].value != x.value:
                 x = jet_of_two(op, jets[height], x)
-            elif (onward(less(x, jets[height])) < 0.0) != (op == MIN):
+            elif (onward(subtract_jets(x, jets[height])) < 0.0) != (op == MIN):
                 x = jets[height]
         elif op <= SQRT:
             if slopes or x.value != 0.0 or op < ABS or op > STEP:
@@ -151,7 +151,7 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
         elif op != HOLD:
             f: Jet = constant(compare(op, jets[height - 1].value, x.value))
             if not slopes and jets[height - 1].value == x.value:
-                f = constant(compare(op, onward(less(jets[height - 1], x)), 0.0))
+                f = constant(compare(op, onward(subtract_jets(jets[height - 1], x)), 0.0))
             height -= 1 - k
             if k == 1:  # the right operand stays above
                 jets[height - 1] = f
@@ -165,7 +165,7 @@ def jet_along(programs: cython.pointer[Programs], program: Program, t: cython.do
     return x
 
 
-def less(a: Jet, b: Jet) -> Jet:
+def subtract_jets(a: Jet, b: Jet) -> Jet:
     """a - b."""
     return Jet(a.value - b.value, a.rate - b.rate, a.second - b.second)
 

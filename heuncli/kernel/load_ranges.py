@@ -23,14 +23,14 @@ if not cython.compiled:
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything
     from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
+    from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
     from heuncli.kernel.programs import Bounds, Span
     from heuncli.kernel.rope_ranges import bounds_of_rope
     from heuncli.kernel.ropes import motion_of_rope
     from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.strains import component_of, rate_of_length, span_of, strain_of
+    from heuncli.kernel.strains import component_of, rate_of_length, find_span_vector, strain_of
     from heuncli.kernel.values import LengthBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966
@@ -48,11 +48,11 @@ def load_at_end(
         places[i] = rope.S
         rates[i] = rope.rate
     elif variable.part == ALONG_LINE:
-        places[i] = norm(span_of(scene, load))
+        places[i] = norm(find_span_vector(scene, load))
         rates[i] = rate_of_length(scene, load)
     else:
         places[i] = component_of(strain_of(scene, load), variable.part)
-        rates[i] = norm(span_of(scene, load))
+        rates[i] = norm(find_span_vector(scene, load))
 
 
 def range_of_load(
@@ -97,11 +97,11 @@ def bounds_of_load(
     rounding: cython.double = scene.limits.rounding
     if load.kind == ROPE:
         return bounds_of_rope(scene, points, load, T)
-    far: cython.double = reach_of(points, load.a, load.p) + reach_of(points, load.b, load.q)
+    far: cython.double = bound_reach(points, load.a, load.p) + bound_reach(points, load.b, load.q)
     if load.a == load.b:
         return LengthBounds(0.0, 0.0, 0.0, far, rounding)
-    V: cython.double = speed_of(points, load.a, load.p) + speed_of(points, load.b, load.q)
-    A: cython.double = acceleration_of(points, load.a, load.p) + acceleration_of(points, load.b, load.q)
+    V: cython.double = bound_speed(points, load.a, load.p) + bound_speed(points, load.b, load.q)
+    A: cython.double = bound_acceleration(points, load.a, load.p) + bound_acceleration(points, load.b, load.q)
     if scene.variables[i].part == ALONG_LINE:
         least: cython.double = points.first_place[i]
         if points.last_place[i] < least:
@@ -113,13 +113,13 @@ def bounds_of_load(
         return LengthBounds(V, INFINITY, 0.5 * V * T, far, rounding)
     if load.kind == BUSHING_SHIFT:
         L: cython.double = points.last_rate[i] + V * T
-        spin: cython.double = spin_of(points, load.a)
-        A = A + (twist_of(points, load.a) + spin * spin) * L + 2.0 * spin * V
+        spin: cython.double = bound_spin(points, load.a)
+        A = A + (bound_twist(points, load.a) + spin * spin) * L + 2.0 * spin * V
         return LengthBounds(V + spin * L, A, 0.125 * A * T * T, far, rounding)
-    spin_a: cython.double = spin_of(points, load.a)
-    spin_b: cython.double = spin_of(points, load.b)
+    spin_a: cython.double = bound_spin(points, load.a)
+    spin_b: cython.double = bound_spin(points, load.b)
     turning: cython.double = QUARTER_TURN * (spin_a + spin_b)
-    A = QUARTER_TURN * (twist_of(points, load.a) + twist_of(points, load.b) + spin_a * spin_b)
+    A = QUARTER_TURN * (bound_twist(points, load.a) + bound_twist(points, load.b) + spin_a * spin_b)
     A = A + STEEPEST * turning * (spin_a + spin_b)
     return LengthBounds(turning, A, 0.125 * A * T * T, 8.0, rounding)
 

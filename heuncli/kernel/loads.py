@@ -39,7 +39,7 @@ if not cython.compiled:
         Scene,
     )
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import span_of
+    from heuncli.kernel.strains import find_span_vector
     from heuncli.kernel.tree import point_of, push
     from heuncli.kernel.values import PointMotion, RopeMotion
 
@@ -206,7 +206,7 @@ def potential_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cy
     elif load.kind >= BUSHING_SHIFT:
         return bushing_energy(scene, load)
     elif load.kind == SPRING:
-        stretch = norm(span_of(scene, load)) - load.length
+        stretch = norm(find_span_vector(scene, load)) - load.length
     elif load.kind == TURN_SPRING:
         stretch = turned_by(scene, load) - load.length
     return 0.5 * load.stiffness * stretch * stretch

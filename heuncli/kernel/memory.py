@@ -13,13 +13,6 @@ except ImportError:
 if not cython.compiled:
     from heuncli.kernel.shadow import cython
 
-    HEUN_SOURCES = b""
-
-
-def compiled_from() -> str:
-    """The digest (sources.py) of the text that this was compiled from; none where it is not compiled."""
-    return HEUN_SOURCES.decode() if cython.compiled else ""
-
 
 class Memory:
     """The arrays behind the pointers that were handed out; in plain Python those whose rows were."""

@@ -1,4 +1,6 @@
-"""The names of the kernel's modules: those that are compiled, and those that only declare."""
+"""The names of the kernel's modules: those that are compiled, those that only declare, and the one made of them."""
+
+NAME = "compiled"
 
 MODULES = (
     "memory",

@@ -13,7 +13,7 @@ if not cython.compiled:
     from heuncli.kernel.stepping import Orbits
 
 
-def acceleration_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_acceleration(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
     """The largest acceleration of a body's point over the part."""
     if body < 0:
         return 0.0
@@ -22,21 +22,21 @@ def acceleration_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -
     return 1.125 * (points.pull[body] + (points.twist[body] + spin * spin) * norm(q))
 
 
-def speed_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_speed(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
     """The largest speed of a body's point over the part."""
     return 1.125 * (points.speed[body] + points.spin[body] * norm(q)) if body >= 0 else 0.0
 
 
-def reach_of(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
+def bound_reach(points: cython.pointer[Orbits], body: cython.int, q: Vec3) -> cython.double:
     """How far a body's point may be from the origin."""
     return norm(q) + (points.reach[body] if body >= 0 else 0.0)
 
 
-def spin_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
+def bound_spin(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
     """How fast a body may turn."""
     return 1.125 * points.spin[body] if body >= 0 else 0.0
 
 
-def twist_of(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
+def bound_twist(points: cython.pointer[Orbits], body: cython.int) -> cython.double:
     """How fast that may change."""
     return 1.125 * points.twist[body] if body >= 0 else 0.0

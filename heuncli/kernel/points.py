@@ -30,7 +30,7 @@ if not cython.compiled:
     from heuncli.kernel.enclosure import enclose
     from heuncli.kernel.intervals import anything, magnitude
     from heuncli.kernel.load_ranges import between, load_at_end, range_of_load
-    from heuncli.kernel.motion_bounds import acceleration_of
+    from heuncli.kernel.motion_bounds import bound_acceleration
     from heuncli.kernel.programs import Bounds, Jet, Span
     from heuncli.kernel.scene import OF_LOAD, ROPE, SHIFT, Body, Freedom, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
@@ -173,7 +173,7 @@ def range_points(
         if variable.is_point == OF_LOAD:
             ranges[i] = range_of_load(scene, points, i, T, ranges[i].value, rates)
             continue
-        A: cython.double = acceleration_of(points, variable.body, variable.q)
+        A: cython.double = bound_acceleration(points, variable.body, variable.q)
         bend: cython.double = 0.125 * A * T * T + rounding_of(scene, points, variable, False)
         drift: cython.double = 0.5 * A * T + rounding_of(scene, points, variable, True)
         place: Bounds = between(points.first_place[i], points.last_place[i], bend)

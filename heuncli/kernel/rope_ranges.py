@@ -23,7 +23,7 @@ if not cython.compiled:
 
     from heuncli.kernel.algebra import Vec3, dot, norm, sub
     from heuncli.kernel.libm import INFINITY
-    from heuncli.kernel.motion_bounds import acceleration_of, reach_of, speed_of, spin_of, twist_of
+    from heuncli.kernel.motion_bounds import bound_acceleration, bound_reach, bound_speed, bound_spin, bound_twist
     from heuncli.kernel.programs import Jet
     from heuncli.kernel.scene import ROD, STRAND, Closure, Load, Scene
     from heuncli.kernel.shadow import cython
@@ -55,24 +55,24 @@ def bounds_of_strand(points: cython.pointer[Orbits], part: cython.pointer[Closur
     turns: cython.double = 1.0 if part.kind == STRAND else 0.0
     sigma: cython.double = turns * fabs(part.g.x - part.g.y)
     radius: cython.double = turns * fabs(part.g.y)
-    spin: cython.double = turns * spin_of(points, part.a)
-    both: cython.double = spin + turns * spin_of(points, part.b)
-    apart: cython.double = speed_of(points, part.a, part.p) + speed_of(points, part.b, part.q)
+    spin: cython.double = turns * bound_spin(points, part.a)
+    both: cython.double = spin + turns * bound_spin(points, part.b)
+    apart: cython.double = bound_speed(points, part.a, part.p) + bound_speed(points, part.b, part.q)
     lies: Vec3 = sub(part.on_b, part.on_a)
     span: cython.double = sqrt(dot(lies, lies) + sigma * sigma) + apart * T
     V: cython.double = apart + spin * span
     across: cython.double = fabs(dot(part.t, lies)) if part.kind == STRAND else norm(lies)
     slant: cython.double = sqrt(fabs(dot(lies, lies) - across * across)) + V * T
     nearest: cython.double = sqrt(across * across + sigma * sigma) - V * T
-    far: cython.double = reach_of(points, part.a, part.p) + reach_of(points, part.b, part.q) + sigma + radius
+    far: cython.double = bound_reach(points, part.a, part.p) + bound_reach(points, part.b, part.q) + sigma + radius
     free: cython.double = nearest * nearest - sigma * sigma
     if not nearest > 0.0 or not free > 0.0:
         return Jet(far, INFINITY if sigma > 0.0 else V + radius * both, INFINITY)
     l: cython.double = sqrt(free)
     G: cython.double = 1.0 + turns * 0.5 * slant * slant * sigma / (free * l)
-    A: cython.double = acceleration_of(points, part.a, part.p) + acceleration_of(points, part.b, part.q)
-    twist: cython.double = turns * twist_of(points, part.a)
+    A: cython.double = bound_acceleration(points, part.a, part.p) + bound_acceleration(points, part.b, part.q)
+    twist: cython.double = turns * bound_twist(points, part.a)
     A = G * (A + (twist + spin * spin) * span + 2.0 * spin * V)
     A += V * V / l + sigma * V * V * (2.0 + sigma / l) / free
-    A += radius * (twist + turns * twist_of(points, part.b) + spin * both)
+    A += radius * (twist + turns * bound_twist(points, part.b) + spin * both)
     return Jet(far, G * V + radius * both, A)

@@ -1,6 +1,7 @@
-"""What the compiled kernel is made from, so that one made from older text is noticed before it runs.
+"""What the compiled kernel is made from, so that one made from other code is noticed before it runs.
 
-The digest of the sources is compiled in (memory.py). Impure: reads the kernel's files and their times.
+What counts is code: neither comments nor docstrings nor empty lines. The digests are compiled in (one_module.py).
+Impure: reads the kernel's files and their times.
 """
 
 from __future__ import annotations
@@ -11,28 +12,57 @@ from heuncli.kernel.modules import DECLARED, MODULES
 
 TYPE_CHECKING = False  # `heun --version` does without typing and pathlib
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
-COMPILED = (".so", ".pyd")
-KEEPER = "memory"  # the module that holds the digest; each compilation makes it anew
-SOURCES = frozenset(f"{name}.py" for name in (*MODULES, *DECLARED, "headers"))
+SOURCES = frozenset((*MODULES, *DECLARED, "headers", "modules", "one_module"))
 
 
-def digest(folder: str) -> str:
-    """A name that is a C identifier for the text of all that is compiled, and of what makes its headers; 3 ms."""
+def digest_texts(folder: str) -> str:
+    """A digest of all the text; 3 ms."""
     import hashlib  # only builds ask, and checkouts in which something was edited
 
-    text = hashlib.sha256()
-    for name in sorted(SOURCES):
-        with open(os.path.join(folder, name), "rb") as file:
-            content = file.read()
-        text.update(f"{name} {len(content)}\n".encode())
-        text.update(content)
-    return f"h{text.hexdigest()}"
+    texts = (f"{name}\n{read(folder, name)}" for name in sorted(SOURCES))
+    return hashlib.sha256("\0".join(texts).encode()).hexdigest()
 
 
-def newer_than_compiled(folder: str, names: Iterable[str]) -> list[str]:
-    """Which of a folder's files are sources that look newer than the last compilation; 0.1 ms on a quick disk."""
-    keeper = next(name for name in names if name.startswith(f"{KEEPER}.") and name.endswith(COMPILED))
-    last = os.stat(os.path.join(folder, keeper)).st_mtime_ns
-    return sorted(name for name in names if name in SOURCES and os.stat(f"{folder}/{name}").st_mtime_ns > last)
+def digest_code(folder: str, names: Iterable[str] = SOURCES) -> dict[str, str]:
+    """A digest of the code of each of some files; 10 ms a file."""
+    import hashlib
+
+    return {
+        name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in names
+    }
+
+
+def read(folder: str, name: str) -> str:
+    """The text of a module."""
+    with open(os.path.join(folder, f"{name}.py"), encoding="utf-8") as file:
+        return file.read()
+
+
+def code_lines(text: str) -> Iterator[str]:
+    """The lines of a text without comments, docstrings and what is empty then; the same for every Python."""
+    import io
+    from tokenize import COMMENT, DEDENT, INDENT, NEWLINE, NL, STRING, generate_tokens
+
+    lines = text.splitlines()
+    tokens = [token for token in generate_tokens(io.StringIO(text).readline) if token.type not in (NL, INDENT, DEDENT)]
+    code = [token for token in tokens if token.type != COMMENT]
+    ends = [NEWLINE, *(token.type for token in code)]  # of the token before each
+    docs = [
+        token
+        for token, before, after in zip(code, ends, ends[2:], strict=False)
+        if (before, token.type, after) == (NEWLINE, STRING, NEWLINE)
+    ]
+    for token in docs:
+        lines[token.start[0] - 1 : token.end[0]] = [""] * (token.end[0] - token.start[0] + 1)
+    for token in tokens:
+        if token.type == COMMENT:
+            lines[token.start[0] - 1] = lines[token.start[0] - 1][: token.start[1]]
+    return (line.rstrip() for line in lines if line.strip())
+
+
+def newer_than(folder: str, compiled: str) -> list[str]:
+    """Which modules have a text that looks newer than the compiled kernel; 0.1 ms on a quick disk."""
+    last = os.stat(os.path.join(folder, compiled)).st_mtime_ns
+    return sorted(name for name in SOURCES if os.stat(os.path.join(folder, f"{name}.py")).st_mtime_ns > last)

@@ -55,7 +55,7 @@ if not cython.compiled:
         judge,
         norm_of,
     )
-    from heuncli.kernel.landing import begin_to_see, in_flurry, meet, see_stage
+    from heuncli.kernel.landing import begin_to_see, in_flurry, find_events_of_step, see_stage
     from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import HELD, TAKEN
     from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
@@ -265,7 +265,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     if run.seeing:
         begin_to_see(scene, run)
     if method.attitude:
-        enter(scene, method, run)
+        enter_chart_of_step(scene, method, run)
     worst: cython.int = take_stages(scene, method, run)
     y: cython.p_double = run.chart.y
     z: cython.p_double = run.chart.z
@@ -275,7 +275,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
         z[i] = y[i] + change
         run.z_carry[i] = change - (z[i] - y[i])
     if method.attitude:
-        leave(scene, method, run)
+        leave_chart_of_step(scene, method, run)
     run.evaluations += method.stages
     trouble: cython.int = evaluate(scene, clipped(run, run.stop), run.z, run.K[method.stages])
     if method.attitude:
@@ -288,7 +288,7 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     return worst if method.fixed and worst < trouble else trouble
 
 
-def enter(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def enter_chart_of_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The start of a step, with its derivative, in the chart of attitudes."""
     i: cython.Py_ssize_t
     for i in range(run.n):
@@ -297,7 +297,7 @@ def enter(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cyt
     enter_slopes(scene, method, run, run.y, 0)
 
 
-def leave(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def leave_chart_of_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
     """The end of a step made a state again; small parts of a chart's numbers are none of the state's."""
     i: cython.Py_ssize_t
     for i in range(run.n):
@@ -534,7 +534,7 @@ def try_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: 
     if code != ACCEPTED:
         return code
     if run.seeing:
-        met = meet(scene, method, run)
+        met = find_events_of_step(scene, method, run)
         if met == CHATTERS:
             return CHATTERING
         if met == AGAIN_TO:

@@ -28,12 +28,12 @@ def axes_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Mat3:
     return load.frame if load.a < 0 else product(scene.bodies[load.a].R, load.frame)
 
 
-def span_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+def find_span_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """From a's point to b's, world axes."""
     return sub(place_of(scene, load.b, load.q), place_of(scene, load.a, load.p))
 
 
-def turn_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+def find_turn_vector(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """phi."""
     T: Mat3 = axes_of(scene, load)
     B: Mat3 = load.to_frame if load.b < 0 else product(scene.bodies[load.b].R, load.to_frame)
@@ -46,8 +46,8 @@ def turn_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
 def strain_of(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """d or phi, by the part of a bushing that the load is."""
     if load.kind == BUSHING_SHIFT:
-        return rotate_back(axes_of(scene, load), span_of(scene, load))
-    return turn_of(scene, load)
+        return rotate_back(axes_of(scene, load), find_span_vector(scene, load))
+    return find_turn_vector(scene, load)
 
 
 def rotation_vector(R: Mat3) -> Vec3:
@@ -105,7 +105,7 @@ def of_load(scene: cython.pointer[Scene], variable: cython.pointer[Variable]) ->
         return rope.rate if variable.is_rate else rope.S
     if variable.part != ALONG_LINE:
         return component_of(strain_of(scene, load), variable.part)
-    return rate_of_length(scene, load) if variable.is_rate else norm(span_of(scene, load))
+    return rate_of_length(scene, load) if variable.is_rate else norm(find_span_vector(scene, load))
 
 
 def component_of(x: Vec3, part: cython.int) -> cython.double:
@@ -115,7 +115,7 @@ def component_of(x: Vec3, part: cython.int) -> cython.double:
 
 def rate_of_length(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> cython.double:
     """l'; 0 of what has no length."""
-    span: Vec3 = span_of(scene, load)
+    span: Vec3 = find_span_vector(scene, load)
     length: cython.double = norm(span)
     return dot(span, parting_of(scene, load)) / length if length > 0.0 else 0.0
 

@@ -9,7 +9,7 @@ except ImportError:
 
 if not cython.compiled:
     from heuncli.kernel.algebra import Mat3, Vec3, add, dot, rotate, rotate_back, sub
-    from heuncli.kernel.bushings import moment_along, times
+    from heuncli.kernel.bushings import moment_along, multiply_components
     from heuncli.kernel.loads import given_vector
     from heuncli.kernel.scene import BUSHING_SHIFT, Load, Scene
     from heuncli.kernel.shadow import cython
@@ -30,16 +30,16 @@ def bushing_along(
     given: Vec3 = given_vector(scene, load)
     rate: Vec3 = rotate_back(T, motion)
     d_rate: Vec3 = rotate_back(T, sub(d_motion, swung(scene, load.a, motion)))
-    drag: Vec3 = times(load.resistances, d_rate)
-    loss: cython.double = -2.0 * dot(times(load.resistances, rate), d_rate)
+    drag: Vec3 = multiply_components(load.resistances, d_rate)
+    loss: cython.double = -2.0 * dot(multiply_components(load.resistances, rate), d_rate)
     x: Vec3 = load.strain
     dx: Vec3 = strain_along(scene, load, x)
-    change: Vec3 = sub(slope, times(load.stiffnesses, dx))
+    change: Vec3 = sub(slope, multiply_components(load.stiffnesses, dx))
     acts: Vec3
     if load.kind == BUSHING_SHIFT:
         acts = load.force
     else:
-        change = moment_along(x, sub(given, times(load.stiffnesses, x)), dx, change)
+        change = moment_along(x, sub(given, multiply_components(load.stiffnesses, x)), dx, change)
         acts = load.moment
     turned: Vec3 = swung(scene, load.a, acts)
     return BushingTangent(add(rotate(T, sub(change, drag)), turned), loss)

@@ -39,9 +39,9 @@ def condition_loads_along(
 ) -> cython.double:
     """What a condition of two bodies demands of the answer; its load, as it changes, on them."""
     if (
-        is_still(scene, row.a)
-        and is_still(scene, row.b)
-        and is_still(scene, row.c if row.kind == MESH or row.kind == CAM else -1)
+        is_motion_unchanged(scene, row.a)
+        and is_motion_unchanged(scene, row.b)
+        and is_motion_unchanged(scene, row.c if row.kind == MESH or row.kind == CAM else -1)
     ):
         return 0.0
     d: RowTangent = condition_along(scene, row)
@@ -51,7 +51,7 @@ def condition_loads_along(
     return d.acceleration
 
 
-def is_still(scene: cython.pointer[Scene], body: cython.int) -> cython.bint:
+def is_motion_unchanged(scene: cython.pointer[Scene], body: cython.int) -> cython.bint:
     """Whether nothing of a body's motion changes."""
     return body < 0 or not scene.tangents[body].moves
 

@@ -37,7 +37,7 @@ def move_along(scene: cython.pointer[Scene], y: cython.p_double, along: cython.p
     for i in range(scene.body_count):
         body: cython.pointer[Body] = cython.address(scene.bodies[i])
         d: cython.pointer[BodyTangent] = cython.address(scene.tangents[i])
-        stand(d)
+        clear_body_tangent(d)
         d.moves = is_moved(scene, body, along)
         if not d.moves:
             continue
@@ -90,7 +90,7 @@ def is_moved(scene: cython.pointer[Scene], body: cython.pointer[Body], along: cy
     return False
 
 
-def stand(d: cython.pointer[BodyTangent]) -> cython.void:
+def clear_body_tangent(d: cython.pointer[BodyTangent]) -> cython.void:
     """Nothing of the body changes."""
     zero: Vec3 = Vec3(0.0, 0.0, 0.0)
     d.turn = zero
@@ -115,7 +115,7 @@ def hang_along(scene: cython.pointer[Scene], body: cython.pointer[Body], d: cyth
     parent: cython.pointer[Body] = cython.address(scene.bodies[body.parent])
     alpha: Vec3 = scene.at_state[body.parent].alpha
     on: cython.pointer[BodyTangent] = cython.address(scene.tangents[body.parent])
-    w: Vec3 = sliding(scene, body)
+    w: Vec3 = find_sliding_speed(scene, body)
     swept: Vec3 = cross(parent.omega, body.arm)
     change: Vec3 = add_cross(cross(on.omega, body.arm), parent.omega, d.arm)  # of omega_p x l
     d.r = add(on.r, d.arm)
@@ -125,7 +125,7 @@ def hang_along(scene: cython.pointer[Scene], body: cython.pointer[Body], d: cyth
     d.v = add(add(on.v, change), d.v)
 
 
-def sliding(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> Vec3:
+def find_sliding_speed(scene: cython.pointer[Scene], body: cython.pointer[Body]) -> Vec3:
     """w = sum u s over the shifts of the joint."""
     k: cython.Py_ssize_t
     w: Vec3 = Vec3(0.0, 0.0, 0.0)

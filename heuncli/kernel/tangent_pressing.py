@@ -92,7 +92,7 @@ def see_along(scene: cython.pointer[Scene]) -> cython.void:
         along: cython.double = dot(dn, F) + dot(n, change)
         change = add_scaled(add_scaled(change, -dot(n, F), dn), -along, n)
         if load.presses == ENDS:
-            couple: Vec3 = add_cross(cross(dn, moment_at(scene, load)), n, moment_along(scene, load))
+            couple: Vec3 = add_cross(cross(dn, moment_at(scene, load)), n, find_moment_change(scene, load))
             put_ends(scene, column, j, change, couple)
         else:
             put_parts(scene, column, j, change, zero)
@@ -133,7 +133,7 @@ def force_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec
     return total
 
 
-def moment_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
+def find_moment_change(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> Vec3:
     """What the moment of the load's joint changes by: dM + (dr - dx) x F + (r - x) x dF, about its `to` point x."""
     i: cython.Py_ssize_t
     total: Vec3 = carried_moment(scene, load)

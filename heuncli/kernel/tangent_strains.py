@@ -16,7 +16,7 @@ if not cython.compiled:
     from heuncli.kernel.bushings import rate_of_vector
     from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, OF_LOAD, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import axes_of, component_of, parting_of, span_of, strain_of
+    from heuncli.kernel.strains import axes_of, component_of, parting_of, find_span_vector, strain_of
     from heuncli.kernel.tangent_motion import point_along, swung, turn_along_of
     from heuncli.kernel.tangent_ropes import rope_along
     from heuncli.kernel.values import LineTangent, PointMotion, RopeMotion
@@ -53,7 +53,7 @@ def of_load_along(scene: cython.pointer[Scene], variable: cython.pointer[Variabl
 
 def line_along(scene: cython.pointer[Scene], load: cython.pointer[Load]) -> LineTangent:
     """Of the line between a load's two points; of one without length nothing is told."""
-    span: Vec3 = span_of(scene, load)
+    span: Vec3 = find_span_vector(scene, load)
     length: cython.double = norm(span)
     if load.a == load.b or not length > 0.0:
         return LineTangent(Vec3(0.0, 0.0, 0.0), 0.0, 0.0)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import time
+from importlib.machinery import EXTENSION_SUFFIXES
 from pathlib import Path
 
 import pytest
@@ -18,12 +20,13 @@ ROOT = Path(form.FOLDER).parent.parent
 REPORT = """\
 import json, sys
 from heuncli.kernel import choose, form
-print(json.dumps([form.KERNEL, [sys.modules[f"heuncli.kernel.{name}"].__file__ for name in form.MODULES]]))
+parts = (choose.enclosure, choose.expressions, choose.integration, choose.jets, choose.steps, choose.workspace)
+print(json.dumps([form.KERNEL, sorted({part.__file__ for part in parts})]))
 """
 
 
 def loaded(wish: str | None) -> tuple[str, list[str]]:
-    """Kernel, and the endings of the files its modules come from, in a fresh process."""
+    """Kernel, and the endings of the files that its doors come from, in a fresh process."""
     env = {key: value for key, value in os.environ.items() if key != "HEUN_KERNEL"}
     env["PYTHONPATH"] = os.pathsep.join([str(ROOT), env.get("PYTHONPATH", "")])
     if wish is not None:
@@ -34,14 +37,15 @@ def loaded(wish: str | None) -> tuple[str, list[str]]:
 
 
 def test_pure_takes_the_plain_files_whatever_lies_beside_them() -> None:
-    assert loaded("pure") == ("pure", [".py"] * len(form.MODULES))
+    assert loaded("pure") == ("pure", [".py"] * 6)
 
 
-def test_left_alone_it_takes_the_compiled_ones_if_all_are_there() -> None:
+def test_left_alone_it_takes_the_compiled_one_if_it_is_there() -> None:
     kernel, endings = loaded(None)
-    built = all(form.is_built(name) for name in form.MODULES)
-    assert kernel == ("compiled" if built else "pure")
-    assert all((ending == ".py") != built for ending in endings)
+    if form.find_compiled():
+        assert kernel == "compiled" and len(endings) == 1 and endings != [".py"]
+    else:
+        assert (kernel, endings) == ("pure", [".py"] * 6)
 
 
 def test_what_runs_here_is_what_was_asked_for() -> None:
@@ -51,19 +55,27 @@ def test_what_runs_here_is_what_was_asked_for() -> None:
     assert form.KERNEL == {"require": "compiled", "compiled": "compiled", "pure": "pure"}.get(wish, form.KERNEL)
 
 
-def test_one_module_missing_makes_all_of_them_plain(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(form, "is_built", lambda name: name != "tree")
+def test_nothing_compiled_is_plain(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(form, "FILES", frozenset({"steps.py"}))
     assert form.choose("") == "pure"
-    with pytest.raises(form.KernelError, match=r"missing: tree.*\[kernel-not-compiled\]") as error:
+    with pytest.raises(form.KernelError, match=r"no compiled kernel.*\[kernel-not-compiled\]") as error:
         form.choose("require")
     assert error.value.exit_code == 2
     assert "C compiler" in str(error.value)
 
 
-def test_all_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(form, "is_built", lambda name: True)
-    monkeypatch.setattr(form, "edited_since_compiled", list)
-    assert [form.choose(wish) for wish in ("", "compiled", "require", "pure")] == ["compiled"] * 3 + ["pure"]
+@pytest.mark.parametrize("wish", ["", "compiled", "require", "pure"])
+def test_it_is_there(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(form, "FILES", frozenset({"steps.py", f"compiled{EXTENSION_SUFFIXES[0]}"}))
+    monkeypatch.setattr(form, "edited_since_compiled", lambda _: [])
+    assert form.choose(wish) == ("pure" if wish == "pure" else "compiled")
+
+
+@pytest.mark.parametrize("wish", ["", "pure", "require"])
+def test_modules_that_an_older_heun_compiled_are_not_mixed_in(wish: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(form, "FILES", frozenset({"steps.py", "steps.abi3.so", f"compiled{EXTENSION_SUFFIXES[0]}"}))
+    with pytest.raises(form.KernelError, match=r"steps\.abi3\.so, 1 in all.*\[stale-kernel\]"):
+        form.choose(wish)
 
 
 def version_of(checkout: Path) -> subprocess.CompletedProcess[str]:
@@ -75,14 +87,20 @@ def version_of(checkout: Path) -> subprocess.CompletedProcess[str]:
 
 @pytest.mark.skipif(form.KERNEL == "pure", reason="nothing is compiled")
 def test_a_kernel_compiled_from_older_text_is_not_run(tmp_path: Path) -> None:
-    """What decides is the text, in a checkout alone: times of files may be anything."""
+    """What decides is the code, in a checkout alone: times of files, comments and docstrings may be anything."""
     shutil.copytree(ROOT / "heuncli", tmp_path / "heuncli", ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "pyproject.toml").touch()
     source = tmp_path / "heuncli" / "kernel" / "tree.py"
     tomorrow = time.time() + 86400.0
     os.utime(source, (tomorrow, tomorrow))
     assert version_of(tmp_path).returncode == 0
-    source.write_text(source.read_text(encoding="utf-8") + "# edited\n", encoding="utf-8")
+    text = source.read_text(encoding="utf-8")
+    told = re.sub(r'^ {4}"""(?=\w)', '    """Another one.\n\n    ', text, flags=re.M).replace(" cython\n", " cython  # why\n")
+    assert told.count("Another one") > 10 and told.count("# why") > 1
+    source.write_text(told + "# edited\n", encoding="utf-8")
+    os.utime(source, (tomorrow, tomorrow))
+    assert version_of(tmp_path).returncode == 0
+    source.write_text(text + "EDITED = 1\n", encoding="utf-8")
     os.utime(source, (tomorrow, tomorrow))
     run = version_of(tmp_path)
     assert (run.returncode, run.stdout) == (2, "")
@@ -93,8 +111,8 @@ def test_a_kernel_compiled_from_older_text_is_not_run(tmp_path: Path) -> None:
 
 
 def test_a_message_names_some_of_what_was_edited(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(form, "is_built", lambda name: True)
-    monkeypatch.setattr(form, "edited_since_compiled", lambda: [f"{name}.py" for name in "abcdefg"])
+    monkeypatch.setattr(form, "find_compiled", lambda: "compiled.so")
+    monkeypatch.setattr(form, "edited_since_compiled", lambda _: [*"abcdefg"])
     with pytest.raises(form.KernelError, match=r"a\.py, b\.py, c\.py, d\.py, e\.py and 2 more changed since"):
         form.choose("")
     assert form.choose("pure") == "pure"

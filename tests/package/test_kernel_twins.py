@@ -1,15 +1,14 @@
-"""The kernel's headers, which are made of its text, say of structs, numbers and functions what the text says."""
+"""The kernel's one compiled module, which is made of its text, says of structs, numbers and functions what that says."""
 
 from __future__ import annotations
 
 import ast
 import re
-from functools import cache
 from pathlib import Path
 
 import pytest
 
-from heuncli.kernel import headers
+from heuncli.kernel import headers, one_module
 from heuncli.kernel.choose import scene, structs
 from heuncli.kernel.modules import DECLARED, MODULES
 from heuncli.tree import tables as records
@@ -27,9 +26,9 @@ ROWS = [
 VALUES = ["Vec3", "Mat3", "Sym3", "Ldl3", "Program"]
 
 
-@cache
-def header(name: str) -> str:
-    return headers.header(FOLDER, name)
+TEXTS = one_module.parse(FOLDER)
+DECLARATIONS = headers.declare(TEXTS)
+INLINED = "\n".join(headers.inlined_functions(TEXTS["algebra"], headers.known_structs(TEXTS)))
 
 
 def kind(annotation: ast.expr | None) -> str:
@@ -39,15 +38,15 @@ def kind(annotation: ast.expr | None) -> str:
 
 
 def inlined(name: str) -> tuple[str, str]:
-    """Head and body of a function in the header of algebra.py."""
-    found = re.search(rf"^(cdef inline [^\n]*\b{name}\(.*?nogil:)\n(.*?)(?=^\S|\Z)", header("algebra"), re.S | re.M)
+    """Head and body of a function of algebra.py."""
+    found = re.search(rf"^(cdef inline [^\n]*\b{name}\(.*?nogil:)\n(.*?)(?=^\S|\Z)", INLINED, re.S | re.M)
     assert found is not None, name
     return found[1], found[2]
 
 
-def fields(struct: str, module: str) -> list[tuple[str, str]]:
-    """Name and type of a struct's fields in a header."""
-    found = re.search(rf"cdef struct {struct}:\n((?:    [^\n]*\n)+)", header(module))
+def fields(struct: str) -> list[tuple[str, str]]:
+    """Name and type of a struct's declared fields."""
+    found = re.search(rf"cdef struct {struct}:\n((?:    [^\n]*\n)+)", DECLARATIONS)
     assert found is not None, struct
     return [(name, of) for of, name in (line.split() for line in found[1].splitlines())]
 
@@ -75,7 +74,7 @@ def test_algebra(function: ast.FunctionDef) -> None:
 def test_rows(record: type[structs.Record]) -> None:
     """Field by field, in order; and the NumPy table has the same."""
     wanted = [(name, FOR_C.get(of, of)) for name, of in record.__annotations__.items()]
-    assert fields(record.__name__, "scene") == wanted
+    assert fields(record.__name__) == wanted
     assert list(records.type_of(record).names or ()) == [name for name, _ in wanted]
 
 
@@ -84,7 +83,7 @@ def test_values(name: str) -> None:
     """Vectors, matrices and programs have the same parts for C, in plain Python and for NumPy."""
     of = vars(scene)[name]
     parts = list(records.type_of(of).names or ())
-    assert [part for part, _ in fields(name, "programs" if name == "Program" else "algebra")] == parts
+    assert [part for part, _ in fields(name)] == parts
     value = of(*range(len(parts)))
     assert [getattr(value, part) for part in parts] == list(range(len(parts)))
 
@@ -97,24 +96,43 @@ def test_a_struct_begins_as_zeros() -> None:
     assert (made.limits.dodges, made.gravity.x, made.bodies) == (0, 0.0, None)
 
 
-@pytest.mark.parametrize("name", [*DECLARED, *MODULES])
-def test_whole_numbers(name: str) -> None:
-    """Enumerations count as the text does."""
-    plain: dict[str, object] = {}
-    module = ast.parse((FOLDER / f"{name}.py").read_text(encoding="utf-8"))
-    block = module.body if name in DECLARED else headers.plain_block(module)
-    given = [node for node in block if isinstance(node, ast.Assign)]
-    exec(ast.unparse(ast.Module(given, [])), plain)
-    wanted = {key: number for key, number in plain.items() if isinstance(number, int)}
-    told = dict(re.findall(r"\b([A-Z]\w*) = (-?\d+)", header(name)))
+def test_whole_numbers() -> None:
+    """Enumerations count as the texts do."""
+    wanted: dict[str, int] = {}
+    for name, module in TEXTS.items():
+        plain: dict[str, object] = {}
+        block = module.body if name in DECLARED else headers.plain_block(module)
+        exec(ast.unparse(ast.Module([node for node in block if isinstance(node, ast.Assign)], [])), plain)
+        wanted |= {key: number for key, number in plain.items() if isinstance(number, int)}
+    told = dict(re.findall(r"\b([A-Z]\w*) = (-?\d+)", DECLARATIONS))
     assert {key: int(number) for key, number in told.items()} == wanted
 
 
-@pytest.mark.parametrize("name", MODULES)
-def test_what_one_module_takes_from_another_is_declared_there(name: str) -> None:
-    for origin, names in re.findall(r"^from heuncli\.kernel\.(\w+) cimport (.*)$", header(name), re.M):
-        for word in names.split(", "):
-            assert re.search(rf"[ *]{word}\b(?! cimport)", header(origin)), f"{origin}.py declares no {word}"
+def test_what_a_module_takes_from_another_has_the_same_name_there() -> None:
+    """In the one module nothing has two names, and what is not imported would be there all the same."""
+    names = {(module, name) for module, name, _ in one_module.defined_names(TEXTS)}
+    for module in MODULES:
+        for node in headers.plain_block(TEXTS[module]):
+            if isinstance(node, ast.ImportFrom):
+                assert not [alias.name for alias in node.names if alias.asname], module
+                origin = (node.module or "").removeprefix("heuncli.kernel.")
+                if origin in TEXTS:
+                    assert {(origin, alias.name) for alias in node.names} <= names, module
+
+
+def test_a_name_has_one_meaning_in_the_kernel() -> None:
+    one_module.refuse_duplicates(TEXTS)
+    wanted = {
+        "def order_all(n: cython.int) -> cython.int:\n    return n": r"order_all is in tree\.py:1 and in selection\.py:\d+",
+        "SAFETY = 2.0": r"SAFETY is in tree\.py:1 and in judging\.py:\d+",
+        "def sqrt(x: cython.double) -> cython.double:\n    return x": r"sqrt is in C's library and in tree\.py:1",
+        "OF, sum = range(2)": r"sum is in Python itself and in tree\.py:1",
+    }
+    for text, message in wanted.items():
+        more = ast.parse(text).body
+        tree = ast.Module([*more, *TEXTS["tree"].body], [])
+        with pytest.raises(one_module.DuplicateName, match=message):
+            one_module.refuse_duplicates(TEXTS | {"tree": tree})
 
 
 TEXT = '''
@@ -128,7 +146,9 @@ LEAST = 0.5
 TOLD = {"few": FEW}
 def told(scene: cython.pointer[Scene], body: cython.pointer[Body], n: cython.int) -> cython.void:
     """Numbers and structs alone."""
-def asked(rows: Sequence[float], n: cython.int) -> cython.size_t:
+def asked(
+    rows: Sequence[float], n: cython.int
+) -> cython.size_t:
     """With an object: it may raise."""
 def given(body: cython.pointer[Body], names: dict[str, float]) -> tuple[float, ...]:
     """An object out of a struct."""
@@ -145,47 +165,70 @@ class Room:
     def size(self) -> int:
         """For Python alone."""
 '''
-HEADER = """\
-# Made of tree.py by headers.py.
-
-from heuncli.kernel.scene cimport Body, Scene
-from libc.math cimport NAN, fabs
-
+DECLARED_OF_IT = """\
 cdef enum:
     FEW = 3, MANY = 4
-
-cdef double LEAST
-
-cdef void told(Scene *scene, Body *body, int n) noexcept nogil
-cdef size_t asked(object rows, int n)
-cdef tuple given(Body *body, dict names)
-
+"""
+TYPE_OF_IT = """\
 cdef class Room:
     cdef int n
     cdef list names
     cdef Scene of
     cdef double *at(self, int i)
 """
+INCLUDED = '''
 
 
-def test_what_is_declared_of_a_text(tmp_path: Path) -> None:
-    for name in DECLARED:
-        (tmp_path / f"{name}.py").write_text((FOLDER / f"{name}.py").read_text(encoding="utf-8"), encoding="utf-8")
-    (tmp_path / "tree.py").write_text(TEXT, encoding="utf-8")
-    assert headers.header(tmp_path, "tree") == HEADER
 
 
-def test_headers_that_say_the_same_stay_as_they_are(tmp_path: Path) -> None:
-    """What is compiled from them is compiled again where one is newer."""
-    headers.write(FOLDER, tmp_path)
-    folder = tmp_path / "heuncli" / "kernel"
-    first = {path: path.stat().st_mtime_ns for path in folder.iterdir()}
-    assert {path.name for path in first} == {f"{name}.pxd" for name in (*DECLARED, *MODULES, "__init__")}
-    (folder / "tree.pxd").write_text("another", encoding="utf-8")
-    headers.write(FOLDER, tmp_path)
-    changed = [path.name for path, time in first.items() if path.stat().st_mtime_ns != time]
-    assert changed == ["tree.pxd"]
-    assert (folder / "tree.pxd").read_text(encoding="utf-8") == header("tree")
+
+
+TOLD = {"few": FEW}
+cdef void told(Scene *scene, Body *body, int n) noexcept nogil:
+    """Numbers and structs alone."""
+cdef size_t asked(object rows, int n):
+
+
+    """With an object: it may raise."""
+cdef tuple given(Body *body, dict names):
+    """An object out of a struct."""
+def open(n: cython.int, x: cython.double[::1]) -> float:
+    """For Python alone."""
+cdef class Room:
+    """Holds a struct."""
+    def __init__(self, n: cython.int) -> None:
+        self.n: cython.int = n
+        self.names: list[str] = []
+        self.of: Scene = Scene.blank()
+    cdef double *at(self, int i):
+        """A pointer."""
+    def size(self) -> int:
+        """For Python alone."""
+'''
+
+
+def test_what_becomes_of_a_text() -> None:
+    module = ast.parse(TEXT)
+    texts = TEXTS | {"tree": module}
+    declared = headers.declare(texts)
+    assert DECLARED_OF_IT in declared and TYPE_OF_IT in declared
+    assert headers.floats(module) == [("LEAST", 0.5)]
+    assert headers.library(headers.plain_block(module)) == ["fabs", "NAN"]
+    assert one_module.include(TEXT, module, headers.known_structs(texts)).split("\n") == ["", *INCLUDED.split("\n")]
+
+
+def test_every_module_is_included_line_for_line(tmp_path: Path) -> None:
+    """So errors name the right line; and what says the same stays as it is, with its time."""
+    package = one_module.write(FOLDER, tmp_path).parent
+    for name in MODULES:
+        plain = (FOLDER / f"{name}.py").read_text(encoding="utf-8").splitlines()
+        made = (package / f"{name}.pxi").read_text(encoding="utf-8").splitlines()
+        kept = [made == text for made, text in zip(made, plain, strict=True) if made.strip()]
+        assert len(made) == len(plain) and kept.count(False) < kept.count(True), name
+    first = {path: path.stat().st_mtime_ns for path in package.iterdir()}
+    (package / "tree.pxi").write_text("another", encoding="utf-8")
+    one_module.write(FOLDER, tmp_path)
+    assert [path.name for path, time in first.items() if path.stat().st_mtime_ns != time] == ["tree.pxi"]
 
 
 def test_answers_fill_their_records() -> None:
