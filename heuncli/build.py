@@ -1,4 +1,4 @@
-"""How the package is built: the kernel by Cython, as one extension module, optional by default, one wheel for all CPythons.
+"""How the package is built: the kernel by Cython, one extension module, optional by default; one wheel a platform.
 
 Its text is made of the kernel's Python files in the build folder (kernel/one_module.py). HEUN_KERNEL at build time:
 
@@ -23,13 +23,20 @@ import sys
 import sysconfig
 from pathlib import Path
 
-from setuptools import Distribution, Extension, setup
-from setuptools.command.bdist_wheel import bdist_wheel
-from setuptools.command.build_ext import build_ext
-from setuptools.command.sdist import sdist
+try:
+    from setuptools import Distribution, Extension, setup
+    from setuptools.command.bdist_wheel import bdist_wheel
+    from setuptools.command.build_ext import build_ext
+    from setuptools.command.sdist import sdist
+except ImportError:  # a virtual environment may bring one that is too old
+    raise SystemExit(
+        'the build needs setuptools 77 or newer and Cython: pip install -U "setuptools>=77" Cython'
+    ) from None
 
 sys.path.insert(0, str(Path(__file__).parents[1]))  # installers load this file alone, where no package can be imported
 from heuncli.kernel import one_module
+from heuncli.kernel.headers import PACKAGE
+from heuncli.kernel.modules import NAME
 
 FOLDER = Path("heuncli", "kernel")
 # The kernel validates before it enters the loops and guards its divisors itself.
@@ -40,11 +47,11 @@ DIRECTIVES = {
     "cdivision": True,
     "initializedcheck": False,
 }
-# No contraction to fused multiply-adds, so that compiled and plain files give the same bits. No error numbers from sqrt:
+# No contraction to fused multiply-adds, so compiled and plain files give the same bits. No error numbers from sqrt:
 # nobody reads them, and the call that would set one stands in the way of its loop. No debugging information, which
 # Python's own flags ask for: it takes a fifth of the time and most of the room of a wheel, and changes no instruction.
 BITS = ("-g0", "-ffp-contract=off", "-fno-math-errno")
-# The operations of expressions, of one body, freedom or row, a line or two each, go into the loops over them, but not so
+# The operations of expressions, of one body, freedom or row, a line or two each, go into the loops over them, not so
 # many that the loops no longer fit the processor's memory for instructions.
 GNU_FLAGS = ("-O3", *BITS, "--param=max-inline-insns-auto=60", "--param=inline-unit-growth=120")
 QUICK_FLAGS = ("-O1", *BITS)
@@ -75,7 +82,7 @@ def oldest(distribution: Distribution) -> int:
 def add_kernel(distribution: Distribution) -> None:
     """Make the kernel part of what is built, unless it was decided otherwise; its text is made when it is compiled."""
     if distribution.ext_modules is None:
-        distribution.ext_modules = [Extension(f"{one_module.PACKAGE}.{one_module.NAME}", [])]
+        distribution.ext_modules = [Extension(f"{PACKAGE}.{NAME}", [])]
 
 
 def say(text: str) -> None:

@@ -40,11 +40,13 @@ def find_compiled() -> str:
 
 
 def refuse_leftovers() -> None:
-    """Raises KernelError for modules that an older heun compiled one by one: they would run in place of the plain files."""
+    """Raises KernelError for modules that an older heun compiled one by one: they would run in place of plain files."""
     left = sorted(file for file in FILES if file.endswith((".so", ".pyd")) and file.partition(".")[0] != NAME)
     if left:
         message = f"compiled files of an older heun lie among the kernel's: {left[0]}, {len(left)} in all"
-        raise KernelError(Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew"))
+        raise KernelError(
+            Problem("stale-kernel", message, hint="python -m heuncli.build removes them and compiles anew")
+        )
 
 
 def edited_since_compiled(compiled: str) -> list[str]:

@@ -1,4 +1,4 @@
-"""What Cython has to know of the kernel, read from its Python texts: a declaration stands nowhere twice (one_module.py).
+"""What Cython has to know of the kernel, read from its Python texts: no declaration stands twice (one_module.py).
 
 What a module says in Python, and what that is for C:
 
@@ -82,9 +82,7 @@ def enumeration(block: list[ast.stmt]) -> list[str]:
 
 def is_float(node: ast.stmt) -> bool:
     """Whether a statement gives a name to a number with a point."""
-    return (
-        isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
-    )
+    return isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
 
 
 def floats(module: ast.Module) -> list[tuple[str, float]]:

@@ -74,7 +74,9 @@ def see_stage(scene: cython.pointer[Scene], run: cython.pointer[Run], t: cython.
 # A step tried
 
 
-def find_events_of_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.int:
+def find_events_of_step(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.int:
     """STANDS, with `turns` where branches turn at its end; AGAIN_TO `cut`; TURNS_OVER of a contact; CHATTERS."""
     code: cython.int = STANDS
     pivot: cython.double = scene.pivot

@@ -30,7 +30,7 @@ if not cython.compiled:
     from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
     from heuncli.kernel.stepping import Orbits
-    from heuncli.kernel.strains import component_of, rate_of_length, find_span_vector, strain_of
+    from heuncli.kernel.strains import component_of, find_span_vector, rate_of_length, strain_of
     from heuncli.kernel.values import LengthBounds, RopeMotion
 
 QUARTER_TURN = 1.5707963267948966

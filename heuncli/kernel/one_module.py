@@ -1,7 +1,7 @@
 """The text of the kernel's one extension module, made of its Python files where it is compiled, and committed nowhere.
 
     compiled.pxd    what has to be known before any function: enumerations, structs, extension types (headers.py)
-    compiled.pyx    C's library, constants, the functions that are inlined where they are used; then an `include` a module
+    compiled.pyx    C's library, constants, functions that are inlined where they are used; then an `include` a module
     NAME.pxi        the module NAME.py line for line, so that errors name the right line: without its imports, with the
                     heads of C functions and extension types as Cython has them. All else stays as it is written
 

@@ -29,9 +29,7 @@ def digest_code(folder: str, names: Iterable[str] = SOURCES) -> dict[str, str]:
     """A digest of the code of each of some files; 10 ms a file."""
     import hashlib
 
-    return {
-        name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in names
-    }
+    return {name: hashlib.sha256("\n".join(code_lines(read(folder, name))).encode()).hexdigest() for name in names}
 
 
 def read(folder: str, name: str) -> str:

@@ -55,7 +55,7 @@ if not cython.compiled:
         judge,
         norm_of,
     )
-    from heuncli.kernel.landing import begin_to_see, in_flurry, find_events_of_step, see_stage
+    from heuncli.kernel.landing import begin_to_see, find_events_of_step, in_flurry, see_stage
     from heuncli.kernel.points import look_at
     from heuncli.kernel.programs import HELD, TAKEN
     from heuncli.kernel.response import evaluate, evaluate_settled, must_choose_anew, settle, settle_evaluated
@@ -288,7 +288,9 @@ def attempt(scene: cython.pointer[Scene], method: cython.pointer[Method], run: c
     return worst if method.fixed and worst < trouble else trouble
 
 
-def enter_chart_of_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def enter_chart_of_step(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
     """The start of a step, with its derivative, in the chart of attitudes."""
     i: cython.Py_ssize_t
     for i in range(run.n):
@@ -297,7 +299,9 @@ def enter_chart_of_step(scene: cython.pointer[Scene], method: cython.pointer[Met
     enter_slopes(scene, method, run, run.y, 0)
 
 
-def leave_chart_of_step(scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]) -> cython.void:
+def leave_chart_of_step(
+    scene: cython.pointer[Scene], method: cython.pointer[Method], run: cython.pointer[Run]
+) -> cython.void:
     """The end of a step made a state again; small parts of a chart's numbers are none of the state's."""
     i: cython.Py_ssize_t
     for i in range(run.n):

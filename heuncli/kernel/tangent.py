@@ -56,7 +56,9 @@ if not cython.compiled:
     from heuncli.kernel.tree import balance, downward, load_along, push_lent
 
 
-def evaluate_base_state(scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double) -> cython.int:
+def evaluate_base_state(
+    scene: cython.pointer[Scene], t: cython.double, y: cython.p_double, dy: cython.p_double
+) -> cython.int:
     """Evaluate the state from which directions are looked at, and keep what stands there; as `evaluate` gives."""
     i: cython.Py_ssize_t
     idle: cython.int = evaluate(scene, t, y, dy)

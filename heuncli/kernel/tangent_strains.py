@@ -16,7 +16,7 @@ if not cython.compiled:
     from heuncli.kernel.bushings import rate_of_vector
     from heuncli.kernel.scene import ALONG_LINE, BUSHING_SHIFT, DRAWN, OF_LOAD, ROPE, Load, Scene, Variable
     from heuncli.kernel.shadow import cython
-    from heuncli.kernel.strains import axes_of, component_of, parting_of, find_span_vector, strain_of
+    from heuncli.kernel.strains import axes_of, component_of, find_span_vector, parting_of, strain_of
     from heuncli.kernel.tangent_motion import point_along, swung, turn_along_of
     from heuncli.kernel.tangent_ropes import rope_along
     from heuncli.kernel.values import LineTangent, PointMotion, RopeMotion

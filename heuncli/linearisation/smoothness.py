@@ -51,12 +51,12 @@ def coincident(layout: Layout, at: Recovered) -> Iterator[str]:
             yield f"forces.{load.name} has no direction, for its two points coincide"
 
 
-class Law(NamedTuple):
+class LoadLaw(NamedTuple):
     """A program of a load: whose it is, where it stands, and the variables that the load has."""
 
     load: str
     start: int
-    count: int
+    length: int
     variables: frozenset[int]
 
 
@@ -79,7 +79,9 @@ def bent(layout: Layout, t: float, state: Array) -> Iterator[str]:
                 yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
 
 
-def differing(programs: Any, laws: list[Law], variables: Array, own: list[float], met: list[float]) -> Iterator[str]:
+def differing(
+    programs: Any, laws: list[LoadLaw], variables: Array, own: list[float], met: list[float]
+) -> Iterator[str]:
     """Loads that have another value or slope on other branches."""
     for law in laws:
         (value, slope), (other, turned) = (on_branches(programs, law, variables, b) for b in (own, met))
@@ -88,7 +90,7 @@ def differing(programs: Any, laws: list[Law], variables: Array, own: list[float]
             yield f"{law.load} jumps or bends there"
 
 
-def is_steep(programs: Any, law: Law, variables: Array, k: int, held: list[float]) -> bool:
+def is_steep(programs: Any, law: LoadLaw, variables: Array, k: int, held: list[float]) -> bool:
     """Whether a law's slope along a variable, on its branches here, is another one, or none, within KINK of the pose.
 
     A slope that is next to none in the pose, and grows evenly beside it, is one: that of a square.
@@ -109,11 +111,11 @@ def expressions(layout: Layout) -> Any:
     return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
 
 
-def laws_of(layout: Layout) -> list[Law]:
+def laws_of(layout: Layout) -> list[LoadLaw]:
     """The programs of all loads."""
     table, places = layout.tables["loads"], {use: k for k, use in enumerate(layout.pack.variables)}
     return [
-        Law(path_of_load(load), int(row[part]["start"]), int(row[part]["count"]), used)
+        LoadLaw(path_of_load(load), int(row[part]["start"]), int(row[part]["count"]), used)
         for load, rows in layout.mechanism.load_rows()
         for used in [frozenset(places[use] for law in load.values for use in law.uses)]
         for row in table[rows]
@@ -122,20 +124,20 @@ def laws_of(layout: Layout) -> list[Law]:
     ]
 
 
-def branches(programs: Any, laws: list[Law], variables: Array) -> list[float]:
+def branches(programs: Any, laws: list[LoadLaw], variables: Array) -> list[float]:
     """The branches on which the loads' expressions find these variables."""
     programs.hold(evaluator.HOLDING["taken"])
     for law in laws:
-        programs.evaluate(law.start, law.count, variables.tolist())
+        programs.evaluate(law.start, law.length, variables.tolist())
     return list(programs.branches())
 
 
-def on_branches(programs: Any, law: Law, variables: Array, held: list[float]) -> tuple[float, Array]:
+def on_branches(programs: Any, law: LoadLaw, variables: Array, held: list[float]) -> tuple[float, Array]:
     """Value and slope of a program on branches that are held."""
     programs.hold(evaluator.HOLDING["held"])
     programs.hold_branches(held)
     x = variables.tolist()
-    return programs.evaluate(law.start, law.count, x), np.array(jets.gradient(programs, law.start, law.count, x))
+    return programs.evaluate(law.start, law.length, x), np.array(jets.gradient(programs, law.start, law.length, x))
 
 
 def touching(here: Looked) -> Iterator[str]:

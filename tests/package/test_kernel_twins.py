@@ -1,4 +1,4 @@
-"""The kernel's one compiled module, which is made of its text, says of structs, numbers and functions what that says."""
+"""The kernel's one compiled module, made of its text, says of structs, numbers and functions what that text says."""
 
 from __future__ import annotations
 
@@ -123,7 +123,9 @@ def test_what_a_module_takes_from_another_has_the_same_name_there() -> None:
 def test_a_name_has_one_meaning_in_the_kernel() -> None:
     one_module.refuse_duplicates(TEXTS)
     wanted = {
-        "def order_all(n: cython.int) -> cython.int:\n    return n": r"order_all is in tree\.py:1 and in selection\.py:\d+",
+        "def order_all(n: cython.int) -> cython.int:\n    return n": (
+            r"order_all is in tree\.py:1 and in selection\.py:\d+"
+        ),
         "SAFETY = 2.0": r"SAFETY is in tree\.py:1 and in judging\.py:\d+",
         "def sqrt(x: cython.double) -> cython.double:\n    return x": r"sqrt is in C's library and in tree\.py:1",
         "OF, sum = range(2)": r"sum is in Python itself and in tree\.py:1",
