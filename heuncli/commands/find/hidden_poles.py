@@ -63,10 +63,9 @@ def flank(course: MeasureCourse, k: int, outer: int) -> float | None:
 
 def keeps_rising(course: MeasureCourse, end: int, inner: int, outer: int) -> bool:
     """Whether the measure at an end of the course is what an exponential rise from two samples makes of it, to LAGS."""
-    x, m = zip(
-        *((course.samples[k].x, abs(course.samples[k].gap + course.value)) for k in (end, inner, outer)), strict=True
-    )  # type: ignore[operator]
-    if m[2] == 0.0:
-        return False
+    x = [course.samples[k].x for k in (end, inner, outer)]
+    m = [(course.samples[k].gap or 0.0) + course.value for k in (end, inner, outer)]
+    if m[1] * m[2] <= 0.0:  # it comes from 0: nothing tells of a pole
+        return True
     power = abs(x[0] - x[1]) / abs(x[1] - x[2])
     return math.log(m[0] / m[1]) > math.log(m[1] / m[2]) * power + math.log(LAGS)
