@@ -3,7 +3,8 @@
 The inverse y = 1/|m| of a measure that rises to a peak, or to a pole of even order, is convex there, as for 1/x^2 or a
 resonance. So it stays above the lines through two samples of y on either side, drawn on inwards. Where these lines stay
 above 0 the measure is bounded; where they pass 0 between the neighbours a pole is not excluded, and one more place is
-asked. At an end of the course one side alone tells, where the sample at the end lags behind an exponential rise.
+asked. At an end of the course there is one flank, which tells less: it is followed where the value is not met yet, so
+that "met nowhere" stands, and where the sample at the end lags behind an exponential rise.
 
     y_l(x) = y_i + s_l (x - x_i),  s_l < 0        y_r(x) = y_j + s_r (x - x_j),  s_r > 0        x_i < x < x_j
 """
@@ -35,6 +36,8 @@ def hidden_pole(course: MeasureCourse, i: int) -> float | None:
         return None
     width, ya, yb = other.x - one.x, 1.0 / abs(a), 1.0 / abs(b)
     if left == 0.0 or right == 0.0:
+        if is_met(course):
+            return None
         end, inner, outer = (i, i + 1, i + 2) if left == 0.0 else (i + 1, i, i - 1)
         if keeps_rising(course, end, inner, outer):
             return None
@@ -59,6 +62,11 @@ def flank(course: MeasureCourse, k: int, outer: int) -> float | None:
         return None
     away = abs(samples[k].x - samples[outer].x)
     return float(rise / away / abs(own) / (abs(far) if own * far > 0.0 else abs(own)))
+
+
+def is_met(course: MeasureCourse) -> bool:
+    """Whether samples lie on both sides of the value."""
+    return len({sample.gap > 0.0 for sample in course.samples if sample.gap is not None}) > 1
 
 
 def keeps_rising(course: MeasureCourse, end: int, inner: int, outer: int) -> bool:
