@@ -61,12 +61,16 @@ class Sample(NamedTuple):
 
 
 class Between(NamedTuple):
-    """What is expected at places between two neighbours: g (n,), by how much it may be off (n,), and the noise."""
+    """What is expected at places between two neighbours: g (n,), by how much it may be off (n,), and the noise.
+
+    off: beyond what noise makes polynomials differ by; most_off (n,): with that, and the errors of the neighbours.
+    """
 
     places: Array
     gaps: Array
     off: Array
     noise: float
+    most_off: Array
 
 
 class CoursePeak(NamedTuple):
@@ -108,6 +112,11 @@ class MeasureCourse:
         self.distrust = DISTRUST
         self._scan = uneven(low, high, count)
         self.spacing = max(b - a for a, b in pairwise(self._scan))
+
+    @property
+    def scanned(self) -> list[float]:
+        """The places of the scan, in order."""
+        return self._scan
 
     def scan(self) -> None:
         """Look at the places of the scan: the ends first, so that a scan cut short has them."""
@@ -233,7 +242,8 @@ class MeasureCourse:
         noise = NOISE * max(sample.error for sample in whole)
         if len(whole) == 2:
             expected = polynomial(whole, x)
-            return Between(x, expected, np.full(len(x), max(self.range, _size(one), _size(other))), noise)
+            off = np.full(len(x), max(self.range, _size(one), _size(other)))
+            return Between(x, expected, off, noise, off)
         parts = [part for part in (whole[:-1], whole[1:]) if one in part and other in part]
         models = [[polynomial(part, x) for part in (whole, *parts)]]
         if self._is_graded(whole, bool(left and right)):
@@ -241,10 +251,12 @@ class MeasureCourse:
         expected, *others = min(models, key=lambda model: float(np.max(np.abs(np.array(model[1:]) - model[0]))))
         if left and right:
             others.append(corner([left[0], one], [other, right[0]], x, expected))
-        off = np.maximum(np.max([np.abs(each - expected) for each in others], axis=0) - noise, 0.0)
+        apart = np.max([np.abs(each - expected) for each in others], axis=0)
+        off = np.maximum(apart - noise, 0.0)
         known = [_gap(sample) for sample in whole]
         steps = (max(known) - min(known)) * (x - one.x) * (other.x - x) / self.spacing**2
-        return Between(x, expected, self.distrust * np.maximum(off, UNSEEN * steps), noise)
+        off, most = (self.distrust * np.maximum(each, UNSEEN * steps) for each in (off, apart))
+        return Between(x, expected, off, noise, most + max(one.error, other.error))
 
     def _is_graded(self, samples: list[Sample], on_both_sides: bool) -> bool:
         """Whether the measure runs through magnitudes, as towards a pole, and may be followed by its logarithm.

@@ -398,7 +398,7 @@ def _rounding(course: KnownCourse, x: Any) -> float:
 
 def _crossings(course: KnownCourse, told: Any, wrong: list[str], ratios: list[float]) -> None:
     """Every root within the error of a crossing, and every crossing within its error of a root."""
-    open_ = [(t["from"], t["to"]) for t in told["touches"]] + list(course.flat)
+    open_ = [(t["from"], t["to"]) for t in told["touches"]] + list(course.flat) + left_open(told)
     for root in course.roots:
         near = [abs(float(mp.mpf(one["x"]) - root)) - one["error"] for one in told["crossings"]]
         reach = _rounding(course, root)
@@ -418,10 +418,16 @@ def _crossings(course: KnownCourse, told: Any, wrong: list[str], ratios: list[fl
             ratios.append(max(off - _rounding(course, one["x"]), 0.0) / one["error"])
 
 
+def left_open(told: Any) -> list[tuple[float, float]]:
+    """Where it is said that a meeting is not excluded."""
+    return [(one["from"]["x"], one["to"]["x"]) for one in told["not_excluded"]]
+
+
 def _touches(course: KnownCourse, told: Any, wrong: list[str]) -> None:
     close = 1e-9 * (course.high - course.low)
     for x in course.touches:
         reached = [(one["from"], one["to"]) for one in told["touches"]]
+        reached += left_open(told)
         reached += [(one["x"] - one["error"], one["x"] + one["error"]) for one in told["crossings"]]
         if not any(a - close <= x <= b + close for a, b in reached):
             wrong.append("missed a touch")
@@ -476,7 +482,7 @@ def _met(course: KnownCourse, relation: str, told: Any, wrong: list[str]) -> Non
     for mark in marks:  # close by what is known, too
         places += [float(mark) + way * 10.0**-k * (course.high - course.low) for k in (2, 4, 6) for way in (-1, 1)]
     for x in places:
-        if not course.low < x < course.high or any(a <= x <= b for a, b in course.flat):
+        if not course.low < x < course.high or any(a <= x <= b for a, b in (*course.flat, *left_open(told))):
             continue
         value = course.f(mp.mpf(x))
         if value is None:
@@ -517,6 +523,7 @@ def main() -> None:
         ratios += verdict.ratios
         for wrong in sorted(set(verdict.wrong)) or ["right"]:
             found[kind][wrong] += 1
+        found[kind]["(not excluded said)"] += bool(verdict.told["not_excluded"])
         if verdict.wrong:
             roots = ", ".join(mp.nstr(x, 17) for x in (*course.roots, *course.touches))
             print(seed, kind, f"x={course.low!r}:{course.high!r}", relation, repr(course.value), course.formula,

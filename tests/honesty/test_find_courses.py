@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from heuncli.commands.find.study import look
+from heuncli.variants.course import Sample
 from tests.honesty.find_courses import KINDS, judged
 
 
@@ -20,3 +22,19 @@ def test_what_is_told_of_a_known_course_is_true(kind: str) -> None:
 def test_so_it_is_by_the_whole_command(seed: int) -> None:
     course, relation, verdict = judged(seed)
     assert verdict.wrong == [], (course, relation)
+
+
+@pytest.mark.parametrize("seed", [1068, 1097, 1104, 1110, 1123, 1240, 1263, 1353, 1595, 1938])
+def test_narrow_peaks_flat_touches_and_near_pairs_are_not_passed_over(seed: int) -> None:
+    """Each was told as met nowhere, at a place out of its stated ends, or as met throughout."""
+    course, relation, verdict = judged(seed, direct=True)
+    assert verdict.wrong == [], (course, relation)
+
+
+@pytest.mark.parametrize(("off", "is_open"), [(3.0, True), (1000.0, False)])
+def test_what_errors_leave_open_is_not_met_nowhere(off: float, is_open: bool) -> None:
+    """A parabola three errors above the value comes to it as far as anyone knows; at a thousand errors it does not."""
+    error = 1e-9
+    found = look(lambda x: Sample(x, (x - 0.4) ** 2 + off * error, error), 0.0, 1.0, "=", count=7, most=300)
+    assert found.complete and not found.touches and found.is_met_nowhere is not is_open
+    assert [one.before.x <= 0.4 <= one.after.x for one in found.not_excluded] == [True] * is_open

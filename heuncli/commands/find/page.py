@@ -13,6 +13,7 @@ from heuncli.commands.find.results import (
     Crossing,
     FindCondition,
     MetEdge,
+    NotExcluded,
     OpenBracket,
     Touch,
     UnsolvedStretch,
@@ -128,14 +129,16 @@ def notes(page: FoundPage) -> Iterator[str]:
     """Sentences on what is no row."""
     found, condition = page.found, page.condition
     if SIDES[condition.relation] and not (found.met or ("=" in condition.relation and not found.is_met_nowhere)):
-        yield ("met nowhere" if found.complete else "not met in what was looked at") + _where(page)
+        is_whole = found.complete and not found.not_excluded
+        yield ("met nowhere" if is_whole else "not met in what was looked at") + _where(page)
     elif found.is_met_nowhere:
         yield ("no crossing" if SIDES[condition.relation] else "met nowhere") + _where(page)
-    elif not (found.crossings or found.touches or found.brackets):
+    elif not (found.crossings or found.touches or found.brackets or found.not_excluded):
         yield "not met in what was looked at" + _where(page)
     yield from (_touch(page, each) for each in found.touches)
     yield from (_jump(page, each) for each in found.jumps)
     yield from (_bracket(page, each) for each in found.brackets)
+    yield from (_not_excluded(page, each) for each in found.not_excluded)
     for each in found.unsolved:
         yield from _unsolved(page, each)
     if not found.complete:
@@ -152,11 +155,13 @@ def _where(page: FoundPage) -> str:
 
 
 def _touch(page: FoundPage, each: Touch) -> str:
-    ends = f"from {page.at(each.low)} to {with_digits(each.high, 0.0)}" if each.low < each.high else "there"
+    ends = f"{page.at(each.low)} and {with_digits(each.high, 0.0)}"
     if not each.side:
+        ends = f"from {page.at(each.low)} to {with_digits(each.high, 0.0)}" if each.low < each.high else "there"
         return f"not told from the value wherever it is known: {ends}"
     side = "above" if each.side > 0 else "below"
-    return f"touches the value at {page.at(each.sample.x)}, {side} it around: not told from it within its error {ends}"
+    place = f"touches the value at {page.at(each.sample.x)}, {side} it around"
+    return f"{place}: not told from it within its error between {ends}"
 
 
 def _jump(page: FoundPage, each: CourseJump) -> str:
@@ -169,6 +174,12 @@ def _bracket(page: FoundPage, each: OpenBracket) -> str:
     before, after = (page.measure(one.gap or 0.0, one.error) for one in each)
     ends = f"{page.at(each.before.x)}, and {after} at {page.at(each.after.x)}"
     return f"passes the value between {before} at {ends}: a crossing or a jump that the search did not close"
+
+
+def _not_excluded(page: FoundPage, each: NotExcluded) -> str:
+    before, after = (page.measure(one.gap or 0.0, one.error) for one in each)
+    ends = f"{page.at(each.before.x)} ({before}) and {with_digits(each.after.x, 0.0)} ({after})"
+    return f"not excluded between {ends}: the variants and their errors leave open whether the value is met there"
 
 
 def _unsolved(page: FoundPage, each: UnsolvedStretch) -> Iterator[str]:
@@ -202,6 +213,9 @@ def to_json(page: FoundPage) -> str:
         ],
         "jumps": [{"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.jumps],
         "brackets": [{"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.brackets],
+        "not_excluded": [
+            {"from": _place(page, each.before), "to": _place(page, each.after)} for each in found.not_excluded
+        ],
         "met": [{"from": each.low._asdict(), "to": each.high._asdict()} for each in found.met],
         "unsolved": [
             {
@@ -258,6 +272,9 @@ def to_csv(page: FoundPage) -> str:
     for bracket in found.brackets:
         writer.writerow(_line(page, "bracket", bracket.before, 0.0, "before"))
         writer.writerow(_line(page, "bracket", bracket.after, 0.0, "after"))
+    for each in found.not_excluded:
+        writer.writerow(_line(page, "not excluded", each.before, 0.0, "before"))
+        writer.writerow(_line(page, "not excluded", each.after, 0.0, "after"))
     for met in found.met:
         for edge, word in zip(met, ("from", "to"), strict=True):
             writer.writerow(["met", edge.x, edge.error, page.interval.unit, "", "", "", word, edge.kind])

@@ -37,6 +37,8 @@ class Crossing(NamedTuple):
 class Touch(NamedTuple):
     """Where the measure is not told from its value and lies on one side of it around: at its best, from low to high.
 
+    low, high: the next places on both sides at which it is told from the value again, or the ends of what is known.
+
     side: on which it lies around; 0: it is not told from the value wherever it is known.
     """
 
@@ -55,6 +57,13 @@ class CourseJump(NamedTuple):
 
 class OpenBracket(NamedTuple):
     """Neighbours on different sides of the value between which the search did not go on: a crossing, or a jump."""
+
+    before: Sample
+    after: Sample
+
+
+class NotExcluded(NamedTuple):
+    """Places on one side of the value between which samples and their errors do not exclude that it is met."""
 
     before: Sample
     after: Sample
@@ -102,6 +111,7 @@ class CourseFindings(NamedTuple):
     touches: tuple[Touch, ...]
     jumps: tuple[CourseJump, ...]
     brackets: tuple[OpenBracket, ...]
+    not_excluded: tuple[NotExcluded, ...]
     unsolved: tuple[UnsolvedStretch, ...]
     met: tuple[Met, ...]
     least: Sample | None
@@ -114,4 +124,4 @@ class CourseFindings(NamedTuple):
     @property
     def is_met_nowhere(self) -> bool:
         """Whether the samples allow to say that the value is met nowhere."""
-        return self.complete and not (self.crossings or self.touches or self.brackets)
+        return self.complete and not (self.crossings or self.touches or self.brackets or self.not_excluded)

@@ -8,11 +8,14 @@ neighbours, less what that may be off by, stays on their side.
 
 from __future__ import annotations
 
+from bisect import bisect, bisect_left
 from collections.abc import Iterator
+from itertools import pairwise
 
 import numpy as np
 
-from heuncli.variants.course import NOISE, Between, MeasureCourse, Sample, polynomial
+from heuncli.commands.find.hidden_poles import hidden_pole
+from heuncli.variants.course import DISTRUST, GOLDEN, NOISE, Between, MeasureCourse, Sample, polynomial
 from heuncli.variants.course_extremes import place_inside
 
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: nearer to where variants begin to fail edges.py looks
@@ -22,6 +25,8 @@ STEEP = 10.0  # times what the slope outside leads to expect: more than that acr
 WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
 PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
 KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
+TRIED = 16.0  # times what polynomials differ by: as far as distrust goes (MOST_DISTRUST)
+CHECKED_OFF = 0.1  # of an interval of the scan: so far off its middle it is tried, so that no wave hides in their beat
 FAR = 1e4  # times the value, and what is usual in the scan
 GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
 
@@ -91,6 +96,93 @@ def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bo
     return bool((nearest <= (error if one.side == other.side else -NOISE * error)).any())
 
 
+def check_scan(course: MeasureCourse) -> None:
+    """Ask once more between places of the scan where the value might be met if the course were off by TRIED times that.
+
+    What differs from what was expected raises the distrust, with which the whole course is looked at again; and both
+    parts of that interval are tried in turn. Raises SpentError.
+    """
+    known = [sample.x for sample in course.samples]
+    intervals = [pair for pair in pairwise(course.scanned) if bisect(known, pair[0]) == bisect_left(known, pair[1])]
+    while intervals:
+        low, high = intervals.pop()
+        i = next(i for i, one, _ in course.pairs() if one.x == low)
+        if course.samples[i + 1].x != high or high - low <= NEAR_JUMP * course.spacing or not is_worth_a_try(course, i):
+            continue
+        x = low + (high - low) * (0.5 + CHECKED_OFF * (2.0 * (len(known) * GOLDEN % 1.0) - 1.0))
+        expected = course.between(i, np.array([x]))
+        found = course.look(x)
+        known.append(x)
+        off = float(expected.off[0]) * DISTRUST / course.distrust
+        if found.gap is not None and abs(found.gap - float(expected.gaps[0])) > off + expected.noise + found.error:
+            intervals += [(low, x), (x, high)]
+
+
+def is_worth_a_try(course: MeasureCourse, i: int) -> bool:
+    """Whether the value would be met between two neighbours if the course were off by TRIED times what is seen."""
+    one, other = course.samples[i], course.samples[i + 1]
+    if course.parted(i) or not one.side or one.side != other.side:
+        return False
+    if not bends_both_ways(course, i):
+        return False
+    expected = course.between(i)
+    nearest = one.side * expected.gaps - TRIED / course.distrust * expected.off
+    return bool((nearest <= max(one.error, other.error)).any())
+
+
+def bends_both_ways(course: MeasureCourse, i: int) -> bool:
+    """Whether the four samples about two neighbours bend to one side and then to the other: a wave hides there, or not.
+
+    What bends one way throughout is followed by its polynomials, or by its logarithm.
+    """
+    left, right = course.beside(i, -1), course.beside(i, 1)
+    four = [
+        *reversed(left[: 1 if right else 2]), course.samples[i], course.samples[i + 1], *right[: 1 if left else 2],
+    ]  # fmt: skip
+    slopes = [((b.gap or 0.0) - (a.gap or 0.0)) / (b.x - a.x) for a, b in pairwise(four)]
+    bends = [after - before for before, after in pairwise(slopes)]
+    return len(bends) < 2 or bends[0] * bends[-1] < 0.0
+
+
+def not_excluded(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
+    """Stretches of one side in which the samples and their errors leave it open whether the value is met.
+
+    Unlike in `unsure`, what polynomials differ by within the noise counts: the search gains nothing by asking there,
+    and yet the course may come to the value. Ends that lead to a crossing or a touch that is told are left out.
+    """
+    ends = ends_of_course(course)
+    open_: tuple[Sample, Sample] | None = None
+    for i, one, other in course.pairs():
+        if not (one.side and one.side == other.side and not course.parted(i) and is_open(course, i, ends)):
+            if open_ is not None:
+                yield open_
+            open_ = None
+        else:
+            open_ = (open_[0] if open_ is not None else one, other)
+    if open_ is not None:
+        yield open_
+
+
+def is_open(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bool:
+    """Whether the course may meet the value between two neighbours of one side; ends: ends_of_course."""
+    one, other = course.samples[i], course.samples[i + 1]
+    if is_far(course, one, other) or near_jump(course, one, other, ends) or leads_to_a_meeting(course, i):
+        return False
+    expected = course.between(i)
+    nearest = (one.side or 0) * expected.gaps - expected.most_off
+    return bool((nearest <= 0.0).any()) or place_of_peak(course, i) is not None
+
+
+def leads_to_a_meeting(course: MeasureCourse, i: int) -> bool:
+    """Whether the course falls between two neighbours towards one beside them that is not told from the value."""
+    samples = course.samples
+    for near, far, beside in ((i, i + 1, i - 1), (i + 1, i, i + 2)):
+        is_met = 0 <= beside < len(samples) and samples[beside].side != samples[near].side
+        if is_met and abs(samples[near].gap or 0.0) < abs(samples[far].gap or 0.0):
+            return True
+    return False
+
+
 def ends_of_course(course: MeasureCourse) -> list[tuple[float, float]]:
     """The neighbours between which the course jumps, is upright, or ends."""
     ends = [(a.x, b.x) for _, a, b in course.pairs() if (a.gap is None) != (b.gap is None)]
@@ -114,6 +206,8 @@ def is_far(course: MeasureCourse, one: Sample, other: Sample) -> bool:
 def place_of_peak(course: MeasureCourse, i: int) -> float | None:
     """Where a peak or a pole between two neighbours may reach the value; None: nothing tells of one that does."""
     one, other = course.samples[i], course.samples[i + 1]
+    if (pole := hidden_pole(course, i)) is not None:
+        return place_inside(one, other, pole)
     peak = course.peak(i)
     if peak is None or not one.side or one.side != other.side:
         return None

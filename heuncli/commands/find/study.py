@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 from heuncli.commands.find.edges import close_edges
 from heuncli.commands.find.places import doubtful, meetings, met, unsolved
-from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, OpenBracket, Touch
-from heuncli.commands.find.search import close_all, search
-from heuncli.commands.find.touches import find_touches
+from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, NotExcluded, OpenBracket, Touch
+from heuncli.commands.find.search import check_scan, close_all, not_excluded, search
+from heuncli.commands.find.touches import enclose_touches, find_touches
 from heuncli.variants.conditions import Sign
 from heuncli.variants.course import MeasureCourse, Sample, SpentError
 from heuncli.variants.course_extremes import extreme, refine_extreme
@@ -43,10 +43,12 @@ def look(
             looked_at = len(course.samples)
             course.withhold_isolated()
             search(course)
+            check_scan(course)
             if (met_at := sum(1 for _ in meetings(course))) != enclosed:  # where more is met than was enclosed before
                 enclose(course)
                 enclosed = met_at
             find_touches(course)
+            enclose_touches(course)
             if not any(meetings(course)) and extreme(course, 1) is not None:
                 refined = True
                 for way in (-1, 1):
@@ -64,6 +66,11 @@ def look(
         touches=tuple(each for each in found if isinstance(each, Touch)),
         jumps=tuple(each for each in found if isinstance(each, CourseJump)),
         brackets=tuple(each for each in found if isinstance(each, OpenBracket)),
+        not_excluded=tuple(
+            NotExcluded(*pair)
+            for pair in not_excluded(course)
+            if not any(isinstance(one, Touch) and one.low <= pair[0].x and pair[1].x <= one.high for one in found)
+        ),
         unsolved=tuple(unsolved(course)),
         met=tuple(met(course, SIDES[relation], equal="=" in relation)) if SIDES[relation] else (),
         least=extreme(course, -1),
