@@ -81,10 +81,10 @@ def meetings(course: MeasureCourse) -> Iterator[Crossing | Touch | CourseJump | 
         before = found[k - 1].side if k else None
         after = found[k + 1].side if k + 1 < len(found) else None
         if group.side == 0:
-            one = met_by(course, group, before, after)
-            if isinstance(one, Touch) and one.side:  # it is between the next that are told from the value
-                one = one._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
-            yield one
+            met = met_by(course, group, before, after)
+            if isinstance(met, Touch) and met.side:  # it is between the next that are told from the value
+                met = met._replace(low=found[k - 1][-1].x, high=found[k + 1][0].x)
+            yield met
         elif group.side and before and before == -group.side:
             one, other = found[k - 1][-1], group[0]
             if (one.x, other.x) in course.jumps:
