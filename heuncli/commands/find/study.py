@@ -60,6 +60,11 @@ def look(
     except SpentError:
         complete = False
     course.withhold_isolated()
+    return collect_findings(course, relation, refined=refined, complete=complete)
+
+
+def collect_findings(course: MeasureCourse, relation: Sign, *, refined: bool, complete: bool) -> CourseFindings:
+    """What the samples of a course tell; complete: the search has ended before its places were spent."""
     found = list(meetings(course))
     return CourseFindings(
         crossings=tuple(each for each in found if isinstance(each, Crossing)),
