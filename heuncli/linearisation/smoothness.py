@@ -74,9 +74,17 @@ def bent(layout: Layout, t: float, state: Array) -> Iterator[str]:
             met = branches(programs, laws, beside)
             if met != own:
                 yield from differing(programs, laws, variables, own, met)
-        for law in laws:
-            if k in law.variables and is_steep(programs, law, variables, k, own):
-                yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
+    yield from steep(layout, t, state)
+
+
+def steep(layout: Layout, t: float, state: Array) -> Iterator[str]:
+    """Loads that have a root so near the state that no slope is that of the pose."""
+    programs, laws = expressions(layout), laws_of(layout)
+    variables = np.array(variables_at(layout, t, state))
+    own = branches(programs, laws, variables)
+    for law in laws:
+        if any(is_steep(programs, law, variables, k, own) for k in sorted(law.variables - {0})):
+            yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
 
 
 def differing(

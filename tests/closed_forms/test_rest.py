@@ -570,3 +570,19 @@ def test_a_crank_drive_keeps_the_rod_moving() -> None:
     assert "drives.w keeps bodies.r moving" in refused(text)
     still = solved(text.replace("3*t", "0.3"))
     near(still.coordinates["m"]["angle"][0], 0.3, 1.0, 1e-15)
+
+
+@pytest.mark.parametrize(
+    ("force", "is_decided"),
+    [("-10*sign(s.travel - 0.1)*sqrt(abs(s.travel - 0.1))", False), ("-10*tanh((s.travel - 0.1)/1e-6)", True)],
+)
+def test_beside_a_root_no_stiffness_is_told(force: str, is_decided: bool) -> None:
+    """The slope of the root is infinite, and that at a pose found 1e-15 m beside it means nothing."""
+    text = (
+        f"{HEAD}{POINTS}bodies: {{ball: {{{BALL}}}}}\n"
+        "joints: {s: {type: slide, axis: [1, 0, 0], from: ground.O, to: ball.c}}\n"
+        f'forces: {{pull: {{type: torque, joint: s, value: "{force}"}}}}\n'
+    )
+    said = " ".join(solved(text).model["notes"])
+    assert ("stable: the least eigenvalue" in said) == is_decided
+    assert ("forces.pull has no slope there" in said) != is_decided

@@ -12,6 +12,7 @@ from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displacements import displacement
 from heuncli.linearisation.indifference import indifference
+from heuncli.linearisation.smoothness import steep
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside
@@ -67,12 +68,14 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     states, bends = beside(runner, found, what)
     own = stability(scene, found.coordinates, law, found.pose.recovered, what, bends)
     layout = replace(scene.layout, y0=found.pose.state)
+    without_slope = list(steep(layout, 0.0, layout.y0))
+    warnings = ridge(layout, both) if without_slope else (*unstable(own), *ridge(layout, both))
     again = Runner(layout)
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))
     rest = Rest(
         steps=both.steps, evaluations=both.evaluations, seconds=time.perf_counter() - begun,
-        beside=(*states, *left_by_the_way(runner, found, both.way)), told=tuple(sentences(scene.mechanism, own)),
-        warnings=(*unstable(own), *ridge(layout, both)),
+        beside=(*states, *left_by_the_way(runner, found, both.way)),
+        told=tuple(sentences(scene.mechanism, own, without_slope)), warnings=tuple(warnings),
     )  # fmt: skip
     return replace(scene, layout=layout), again, rest
 
@@ -88,10 +91,15 @@ def require_no_way(layout: Layout, state: Array) -> None:
     raise SolveError(Problem("no-rest-pose", message, hint=hint))
 
 
-def sentences(mechanism: Mechanism, own: Stability) -> list[str]:
-    """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent."""
+def sentences(mechanism: Mechanism, own: Stability, without_slope: list[str]) -> list[str]:
+    """How the scene rests, in sentences: in which frame, stable or not, and along which motions it is indifferent.
+
+    without_slope: sentences on loads that have no slope in the pose: its stability is not that of any stiffness.
+    """
     drives = some(list(going_on(mechanism)))
     told = [f"at rest in the frame that goes along with {drives}"] if drives else []
+    if without_slope:
+        return [*told, f"whether the pose is stable is not decided: {'; '.join(without_slope)}"]
     least = f"the least eigenvalue of stiffness over inertia is {own.least:.4g} 1/s² ({own.slowest})"
     loose = own.indifferent + own.flat + own.edge
     if own.growth > 0.0:
