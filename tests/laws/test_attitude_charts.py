@@ -70,7 +70,7 @@ def spin(kappa: Array, rate: Array) -> Array:
 def test_composition(case: int) -> None:
     """kappa of R(b) R(a) is (b + a + b x a) / (1 - a . b); counted from a it is b."""
     a, b = np.random.default_rng(case).normal(size=(2, 3))
-    turned = CHART.turned_by(vector(b), quaternion_of(a))
+    turned = CHART.turn_quaternion(vector(b), quaternion_of(a))
     near(np.linalg.norm(numbers(turned)), 1.0, 1.0, 1e-15)
     none = CHART.Quaternion(1.0, 0.0, 0.0, 0.0)
     whole = numbers(CHART.kappa_of(turned, none))

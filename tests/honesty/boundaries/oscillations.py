@@ -102,6 +102,12 @@ def beside_a_kink(x: float) -> str:
     return hanging(0.0, f"max(0, pivot.angle - {x!r})")
 
 
+def beside_a_bend(x: float) -> str:
+    """The same with a weak torque whose slope is less by x of itself some 1e-10 beside the pose: a root, or smooth."""
+    width = 0.05 * tolerances.KINK
+    return hanging(0.0, f"-1e-14*(pivot.angle + {x / (1.0 - x)!r}*{width!r}*tanh(pivot.angle/{width!r}))")
+
+
 PART = Part(
     ("small oscillations",),
     rows=(
@@ -110,6 +116,7 @@ PART = Part(
         Row("FREELY_PUSHED", pushed_freely, "rests", "falls"),
         Row("OFF_BALANCE", hanging, "fine", "refused: not-at-rest"),
         Row("KINK", beside_a_kink, "refused: no-modes", "fine"),
+        Row("STEEP", beside_a_bend, "fine", "refused: no-modes"),
     ),
     wanted={
         "GOES_ON": "whether what moves steadily goes on in the same way",
