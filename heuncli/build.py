@@ -62,7 +62,7 @@ SANITIZED_FLAGS = (
 )  # fmt: skip
 CHECKED = {"boundscheck": True, "initializedcheck": True}
 MSVC_FLAGS = ("/O2", "/fp:precise")
-# Builds of CPython without the global lock have no stable interface yet, other Pythons none at all.
+# What is said while it builds.
 COMPILES = "heun: the kernel is compiled, which takes about a minute on two cores"
 QUICKLY = "heun: the kernel is compiled quickly, to be tried: it runs slower than it can"
 PLAIN = (
@@ -114,13 +114,18 @@ class BuildKernel(build_ext):
         if self.kernel not in ("", "require", "compiled", "pure"):
             raise SystemExit(f"HEUN_KERNEL={self.kernel}: known: require, compiled, pure")
         for extension in self.extensions or []:
-            extension.optional = self.kernel not in ("require", "compiled")
+            extension.optional = not self.is_required
         self.cython_directives = DIRECTIVES | (CHECKED if self.sanitized else {})
         self.generated = Path(self.build_temp, "generated")
         self.cython_include_dirs = [str(self.generated)]
         if self.kernel == "pure":
             self.forget()
             self.extensions = []
+
+    @property
+    def is_required(self) -> bool:
+        """Whether a failed compilation fails the build."""
+        return self.kernel in ("require", "compiled")
 
     def forget(self, but: str = "") -> None:
         """Remove what earlier builds left: it would be packed beside a newer source, or imported in its place.
@@ -147,7 +152,7 @@ class BuildKernel(build_ext):
             super().build_extension(ext)
         except Exception as reason:  # whatever stops a compiler: the plain files run everywhere
             self.forget()
-            if self.kernel in ("require", "compiled"):
+            if self.is_required:
                 raise
             say(PLAIN.format(reason=str(reason).strip().partition("\n")[0]))
         finally:

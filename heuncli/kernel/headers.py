@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
+from typing import TypeGuard
 
 from heuncli.kernel.modules import DECLARED, MODULES
 
@@ -80,18 +81,14 @@ def enumeration(block: list[ast.stmt]) -> list[str]:
     return ["cdef enum:\n", *(f"    {line}\n" for line in lines)] if lines else []
 
 
-def is_float(node: ast.stmt) -> bool:
+def is_float(node: ast.stmt) -> TypeGuard[ast.Assign]:
     """Whether a statement gives a name to a number with a point."""
     return isinstance(node, ast.Assign) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, float)
 
 
 def floats(module: ast.Module) -> list[tuple[str, float]]:
     """The names at the top that are numbers with a point, and these."""
-    return [
-        (ast.unparse(node.targets[0]), ast.literal_eval(node.value))
-        for node in module.body
-        if is_float(node) and isinstance(node, ast.Assign)
-    ]
+    return [(ast.unparse(node.targets[0]), ast.literal_eval(node.value)) for node in module.body if is_float(node)]
 
 
 # Types
@@ -137,14 +134,13 @@ def of(kind: str, name: str) -> str:
 # Structs and extension types
 
 
-def is_struct(node: ast.stmt, structs: frozenset[str]) -> bool:
+def is_struct(node: ast.stmt, structs: frozenset[str]) -> TypeGuard[ast.ClassDef]:
     """Whether a statement is a struct of the kernel."""
     return isinstance(node, ast.ClassDef) and node.name in structs
 
 
-def struct(node: ast.stmt, structs: frozenset[str]) -> str:
+def struct(node: ast.ClassDef, structs: frozenset[str]) -> str:
     """A struct; a tuple of structs of one kind is an array."""
-    assert isinstance(node, ast.ClassDef)
     lines = [f"cdef struct {node.name}:\n"]
     for field in node.body:
         if isinstance(field, ast.AnnAssign):

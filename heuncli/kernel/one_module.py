@@ -32,9 +32,7 @@ NUMBERS = '''cdef extern from *:
 {given}    """
 {known}
 '''
-
-
-OWN = ("TEXT_DIGEST", "CODE_DIGESTS", "cython")
+OWN = ("TEXT_DIGEST", "CODE_DIGESTS", "cython")  # names that compose() gives
 
 
 class DuplicateName(Exception):
@@ -128,9 +126,8 @@ def blank(lines: list[str], first: int, last: int) -> None:
 def refuse_duplicates(modules: dict[str, ast.Module]) -> None:
     """Raises DuplicateName where a name of the kernel is defined twice, or is one of Python's own or of C's library."""
     blocks = [headers.plain_block(module) for name, module in modules.items() if name in MODULES]
-    places = dict.fromkeys((*dir(builtins), *OWN), "Python itself") | {
-        name: "C's library" for block in blocks for name in headers.library(block)
-    }
+    places = dict.fromkeys(dir(builtins), "Python itself") | dict.fromkeys(OWN, "one_module.py")
+    places |= {name: "C's library" for block in blocks for name in headers.library(block)}
     wrong = []
     for module, name, line in defined_names(modules):
         place = f"{module}.py:{line}"

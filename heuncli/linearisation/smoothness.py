@@ -38,7 +38,9 @@ def without_slope(here: Looked) -> Iterator[str]:
 def without_derivative(layout: Layout, t: float, at: Recovered) -> Iterator[str]:
     """Sentences on the loads that have none in the one state of at."""
     yield from coincident(layout, at)
-    yield from bent(layout, t, at.states[0])
+    here = examine_laws(layout, t, at.states[0])
+    yield from find_kinks(here)
+    yield from find_roots(here)
 
 
 def coincident(layout: Layout, at: Recovered) -> Iterator[str]:
@@ -60,52 +62,59 @@ class LoadLaw(NamedTuple):
     variables: frozenset[int]
 
 
-def bent(layout: Layout, t: float, state: Array) -> Iterator[str]:
-    """Loads whose expressions jump or bend there, or have a root so near that no slope is that of the pose."""
-    if len(layout.pack.variables) == 1:
-        return
-    programs, laws = expressions(layout), laws_of(layout)
+class ExaminedLaws(NamedTuple):
+    """The laws of all loads in one state: their programs, the variables there, and the branches that these are on."""
+
+    programs: Any
+    laws: list[LoadLaw]
+    variables: Array
+    branches: list[float]
+
+
+def examine_laws(layout: Layout, t: float, state: Array) -> ExaminedLaws:
+    """The laws of a scene's loads in a state."""
+    programs, laws = expressions(layout), list_laws(layout)
     variables = np.array(variables_at(layout, t, state))
-    own = branches(programs, laws, variables)
-    for k in range(1, len(variables)):
+    return ExaminedLaws(programs, laws, variables, branches(programs, laws, variables))
+
+
+def find_kinks(here: ExaminedLaws) -> Iterator[str]:
+    """Loads whose expressions jump or bend in the state."""
+    for k in range(1, len(here.variables)):  # the first is the time
         for sign in (1.0, -1.0):
-            beside = variables.copy()
+            beside = here.variables.copy()
             beside[k] += sign * tolerances.KINK * max(1.0, abs(beside[k]))
-            met = branches(programs, laws, beside)
-            if met != own:
-                yield from differing(programs, laws, variables, own, met)
-    yield from steep(layout, t, state)
+            met = branches(here.programs, here.laws, beside)
+            if met != here.branches:
+                yield from differing(here, met)
 
 
-def steep(layout: Layout, t: float, state: Array) -> Iterator[str]:
-    """Loads that have a root so near the state that no slope is that of the pose."""
-    programs, laws = expressions(layout), laws_of(layout)
-    variables = np.array(variables_at(layout, t, state))
-    own = branches(programs, laws, variables)
-    for law in laws:
-        if any(is_steep(programs, law, variables, k, own) for k in sorted(law.variables - {0})):
+def find_roots(here: ExaminedLaws) -> Iterator[str]:
+    """Loads that have a root so near the state that no slope is that of the state."""
+    for law in here.laws:
+        if any(is_steep(here, law, k) for k in sorted(law.variables - {0})):
             yield f"{law.load} has no slope there (a root at 0, an angle of a point that lies on the axis)"
 
 
-def differing(
-    programs: Any, laws: list[LoadLaw], variables: Array, own: list[float], met: list[float]
-) -> Iterator[str]:
-    """Loads that have another value or slope on other branches."""
-    for law in laws:
-        (value, slope), (other, turned) = (on_branches(programs, law, variables, b) for b in (own, met))
+def differing(here: ExaminedLaws, met: list[float]) -> Iterator[str]:
+    """Loads that have another value or slope on the branches met."""
+    for law in here.laws:
+        (value, slope), (other, turned) = (
+            on_branches(here.programs, law, here.variables, branch) for branch in (here.branches, met)
+        )
         size = 1.0 + abs(value) + np.abs(slope).max()
         if not max(abs(value - other), np.abs(slope - turned).max()) <= tolerances.KINK * size:
             yield f"{law.load} jumps or bends there"
 
 
-def is_steep(programs: Any, law: LoadLaw, variables: Array, k: int, held: list[float]) -> bool:
+def is_steep(here: ExaminedLaws, law: LoadLaw, k: int) -> bool:
     """Whether a law's slope along a variable, on its branches here, is another one, or none, within KINK of the pose.
 
     A slope that is next to none in the pose, and grows evenly beside it, is one: that of a square.
     """
-    around = np.tile(variables, (len(BESIDE), 1))
-    around[:, k] += BESIDE * tolerances.KINK * max(1.0, abs(variables[k]))
-    slopes = np.array([on_branches(programs, law, x, held)[1][k] for x in around])
+    around = np.tile(here.variables, (len(BESIDE), 1))
+    around[:, k] += BESIDE * tolerances.KINK * max(1.0, abs(here.variables[k]))
+    slopes = np.array([on_branches(here.programs, law, x, here.branches)[1][k] for x in around])
     if not np.isfinite(slopes).all():
         return True
     most, spread = np.abs(slopes).max(), np.ptp(slopes)
@@ -119,7 +128,7 @@ def expressions(layout: Layout) -> Any:
     return evaluator.Expressions(pack.code, pack.constants, len(pack.variables), pack.held, pack.starts, pack.tables)
 
 
-def laws_of(layout: Layout) -> list[LoadLaw]:
+def list_laws(layout: Layout) -> list[LoadLaw]:
     """The programs of all loads."""
     table, places = layout.tables["loads"], {use: k for k, use in enumerate(layout.pack.variables)}
     return [

@@ -110,17 +110,12 @@ class MeasureCourse:
         self.jumps: set[tuple[float, float]] = set()
         self.steep: set[tuple[float, float]] = set()
         self.distrust = DISTRUST
-        self._scan = uneven(low, high, count)
-        self.spacing = max(b - a for a, b in pairwise(self._scan))
-
-    @property
-    def scanned(self) -> list[float]:
-        """The places of the scan, in order."""
-        return self._scan
+        self.scanned = uneven(low, high, count)
+        self.spacing = max(b - a for a, b in pairwise(self.scanned))
 
     def scan(self) -> None:
         """Look at the places of the scan: the ends first, so that a scan cut short has them."""
-        for x in (self._scan[0], self._scan[-1], *self._scan[1:-1]):
+        for x in (self.scanned[0], self.scanned[-1], *self.scanned[1:-1]):
             self.at(x)
         self.usual = float(
             np.median([_size(sample._replace(gap=_gap(sample) + self.value)) for sample in self.samples])

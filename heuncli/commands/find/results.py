@@ -37,8 +37,7 @@ class Crossing(NamedTuple):
 class Touch(NamedTuple):
     """Where the measure is not told from its value and lies on one side of it around: at its best, from low to high.
 
-    low, high: the next places on both sides at which it is told from the value again, or the ends of what is known.
-
+    low, high: the next places on both sides at which it is told from the value again, or the ends of what is known;
     side: on which it lies around; 0: it is not told from the value wherever it is known.
     """
 

@@ -14,8 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from heuncli.commands.find.hidden_poles import hidden_pole
-from heuncli.variants.course import DISTRUST, GOLDEN, NOISE, Between, MeasureCourse, Sample, polynomial
+from heuncli.commands.find.poles import is_far, place_of_hidden_pole
+from heuncli.variants.course import DISTRUST, GOLDEN, MOST_DISTRUST, NOISE, Between, MeasureCourse, Sample, polynomial
 from heuncli.variants.course_extremes import place_inside
 
 END_OF_SOLVED = 1.0 / 32.0  # of the scan's spacing: nearer to where variants begin to fail edges.py looks
@@ -25,9 +25,7 @@ STEEP = 10.0  # times what the slope outside leads to expect: more than that acr
 WIDER = 1000.0  # times the narrowest bracket: another one, across which a jump is as large
 PROVES = 10.0  # times the narrowest bracket: what is no wider proves no jump
 KEPT = 0.8  # of what the course changes by across that: less across the narrowest one is no jump
-TRIED = 16.0  # times what polynomials differ by: as far as distrust goes (MOST_DISTRUST)
 CHECKED_OFF = 0.1  # of an interval of the scan: so far off its middle it is tried, so that no wave hides in their beat
-FAR = 1e4  # times the value, and what is usual in the scan
 GROWTH = 2.0  # times what a peak is expected to rise by: as far it may
 
 
@@ -97,7 +95,7 @@ def unsure(course: MeasureCourse, i: int, ends: list[tuple[float, float]]) -> bo
 
 
 def check_scan(course: MeasureCourse) -> None:
-    """Ask once more between places of the scan where the value might be met if the course were off by TRIED times that.
+    """Ask once more in each interval of the scan that is worth a try.
 
     What differs from what was expected raises the distrust, with which the whole course is looked at again; and both
     parts of that interval are tried in turn. Raises SpentError.
@@ -119,14 +117,14 @@ def check_scan(course: MeasureCourse) -> None:
 
 
 def is_worth_a_try(course: MeasureCourse, i: int) -> bool:
-    """Whether the value would be met between two neighbours if the course were off by TRIED times what is seen."""
+    """Whether two neighbours may hide a wave that meets the value, were it off by MOST_DISTRUST times as much."""
     one, other = course.samples[i], course.samples[i + 1]
     if course.parted(i) or not one.side or one.side != other.side:
         return False
     if not bends_both_ways(course, i):
         return False
     expected = course.between(i)
-    nearest = one.side * expected.gaps - TRIED / course.distrust * expected.off
+    nearest = one.side * expected.gaps - MOST_DISTRUST / course.distrust * expected.off
     return bool((nearest <= max(one.error, other.error)).any())
 
 
@@ -195,18 +193,10 @@ def near_jump(course: MeasureCourse, one: Sample, other: Sample, ends: list[tupl
     return any(low - margin <= one.x and other.x <= high + margin for low, high in ends)
 
 
-def is_far(course: MeasureCourse, one: Sample, other: Sample) -> bool:
-    """Whether two neighbours lie so far off, beside a pole, that the course does not come back between them."""
-    if not one.side or one.side != other.side:
-        return False
-    least = min(abs((sample.gap or 0.0) + course.value) for sample in (one, other))
-    return least > FAR * max(course.usual, abs(course.value))
-
-
 def place_of_peak(course: MeasureCourse, i: int) -> float | None:
     """Where a peak or a pole between two neighbours may reach the value; None: nothing tells of one that does."""
     one, other = course.samples[i], course.samples[i + 1]
-    if (pole := hidden_pole(course, i)) is not None:
+    if (pole := place_of_hidden_pole(course, i)) is not None:
         return place_inside(one, other, pole)
     peak = course.peak(i)
     if peak is None or not one.side or one.side != other.side:

@@ -5,16 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from heuncli.commands.find.edges import close_edges
-from heuncli.commands.find.places import doubtful, meetings, met, unsolved
+from heuncli.commands.find.places import SideGroup, doubtful, groups, meetings, met, unsolved
 from heuncli.commands.find.results import CourseFindings, CourseJump, Crossing, NotExcluded, OpenBracket, Touch
 from heuncli.commands.find.search import check_scan, close_all, not_excluded, search
-from heuncli.commands.find.touches import enclose_touches, find_touches
+from heuncli.commands.find.touches import find_touches, size
 from heuncli.variants.conditions import Sign
 from heuncli.variants.course import MeasureCourse, Sample, SpentError
 from heuncli.variants.course_extremes import extreme, refine_extreme
 
 HALVINGS = 8  # towards a crossing whose slope is not well known: a 250th of the neighbour's distance
-
+HALVINGS_OF_TOUCH = (
+    12  # towards each end of a touch: flat ones come to an end a 4,000th of the neighbour's distance off
+)
+CLOSE_TO_VALUE = 4.0  # times the error: |g| at the end of a touch, which tells where it is
 
 SIDES: dict[Sign, int] = {"=": 0, "<": -1, "<=": -1, ">": 1, ">=": 1}  # of the value: where it is met
 
@@ -93,3 +96,34 @@ def enclose(course: MeasureCourse) -> None:
         for place in list(doubtful(course)):
             course.at(place)
         close_all(course)  # a group that was one may have come apart
+
+
+def enclose_touches(course: MeasureCourse) -> None:
+    """Close in from both sides on what is not told from the value, so that its ends tell where the touch is.
+
+    Each end is halved towards it until |g| is a few errors only. Raises SpentError.
+    """
+    for group in touching_groups(course):
+        for end, way in ((group[0], -1), (group[-1], 1)):
+            for _ in range(HALVINGS_OF_TOUCH):
+                k = course.samples.index(end)
+                if not 0 <= k + way < len(course.samples) or course.parted(min(k, k + way)):
+                    break
+                outer = course.samples[k + way]
+                if size(outer) <= CLOSE_TO_VALUE * end.error or abs(outer.x - end.x) <= course.finest:
+                    break
+                found = course.at(0.5 * (end.x + outer.x))
+                if found.gap is None:
+                    break
+                if found.side == 0:
+                    end = found
+
+
+def touching_groups(course: MeasureCourse) -> list[SideGroup]:
+    """Neighbours that are not told from the value and have the same side before and behind."""
+    found = groups(course)
+    return [
+        group
+        for before, group, after in zip(found, found[1:], found[2:], strict=False)
+        if group.side == 0 and before.side and before.side == after.side
+    ]

@@ -9,7 +9,6 @@ twice as far from the value the least distance beside that place. Towards the pl
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import groupby
 
 from heuncli.variants.course import NOISE, MeasureCourse, Sample
 
@@ -19,8 +18,6 @@ FALLS = 0.5  # of |g|: a step that gains less ends the way, and a sample less be
 REACH = 3.0  # least distances: as far as |g| is to double on both sides of a touch
 MOST = 60  # steps towards one touch
 TWICE = 2.0
-HALVINGS = 12  # towards the ends of a touch
-ENCLOSED = 4.0  # times the error: |g| where an end of a touch is told
 
 
 def find_touches(course: MeasureCourse) -> None:
@@ -120,32 +117,3 @@ def foretold(left: Sample, middle: Sample, right: Sample) -> float | None:
 def size(sample: Sample) -> float:
     """|g|."""
     return abs(sample.gap or 0.0)
-
-
-def enclose_touches(course: MeasureCourse) -> None:
-    """Close in from both sides on what is not told from the value, so that its ends tell where the touch is.
-
-    Each end is halved towards it until |g| is some errors only, or HALVINGS times. Raises SpentError.
-    """
-    for first, last in list(flat_stretches(course)):
-        for end, way in ((first, -1), (last, 1)):
-            for _ in range(HALVINGS):
-                k = course.samples.index(end)
-                if not 0 <= k + way < len(course.samples) or course.parted(min(k, k + way)):
-                    break
-                outer = course.samples[k + way]
-                if size(outer) <= ENCLOSED * end.error or abs(outer.x - end.x) <= course.finest:
-                    break
-                found = course.at(0.5 * (end.x + outer.x))
-                if found.gap is None:
-                    break
-                if found.side == 0:
-                    end = found
-
-
-def flat_stretches(course: MeasureCourse) -> Iterator[tuple[Sample, Sample]]:
-    """The first and the last of neighbours that are not told from the value, and lie on one side around."""
-    groups = [list(members) for _, members in groupby(course.samples, key=lambda sample: sample.side)]
-    for before, group, after in zip(groups, groups[1:], groups[2:], strict=False):
-        if group[0].side == 0 and before[0].side and before[0].side == after[0].side:
-            yield group[0], group[-1]

@@ -12,7 +12,7 @@ from heuncli.integration.diagnosis.solvability import Wording, require_solvable
 from heuncli.integration.run.runner import Runner
 from heuncli.linearisation.displacements import displacement
 from heuncli.linearisation.indifference import indifference
-from heuncli.linearisation.smoothness import steep
+from heuncli.linearisation.smoothness import examine_laws, find_roots
 from heuncli.mechanism.model import Mechanism
 from heuncli.records import record, replace
 from heuncli.rest.digits import beside
@@ -68,7 +68,7 @@ def at_rest(scene: PreparedScene, runner: Runner) -> tuple[PreparedScene, Runner
     states, bends = beside(runner, found, what)
     own = stability(scene, found.coordinates, law, found.pose.recovered, what, bends)
     layout = replace(scene.layout, y0=found.pose.state)
-    without_slope = list(steep(layout, 0.0, layout.y0))
+    without_slope = list(find_roots(examine_laws(layout, 0.0, layout.y0)))
     warnings = ridge(layout, both) if without_slope else (*unstable(own), *ridge(layout, both))
     again = Runner(layout)
     require_still(again, found.coordinates, bearing(again, found.coordinates, 0.0, layout.y0))

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import math
 
-from heuncli.variants.course import NOISE, MeasureCourse
+from heuncli.variants.course import NOISE, MeasureCourse, Sample
 
 LAGS = 0.5  # of an exponential rise: what is less at the end has passed a peak, or bends far more than 1/m does
-FAR_UP = 1e4  # times the value, and what is usual in the scan: a pole so far up is followed no farther
+FAR = 1e4  # times the value, and what is usual in the scan: a pole so far up is followed no farther
 
 
-def hidden_pole(course: MeasureCourse, i: int) -> float | None:
+def place_of_hidden_pole(course: MeasureCourse, i: int) -> float | None:
     """Where between a sample and the next the measure may pass all bounds; None: it does not, or nothing tells of it.
 
     The flanks are read beyond the noise of their samples. Towards a value far beyond what is usual nothing is asked.
@@ -29,14 +29,14 @@ def hidden_pole(course: MeasureCourse, i: int) -> float | None:
         return None
     one, other = samples[i], samples[i + 1]
     a, b = (sample.gap + course.value for sample in (one, other))  # type: ignore[operator]
-    if a * b <= 0.0 or max(abs(a), abs(b)) > FAR_UP * max(course.usual, abs(course.value)):
+    if a * b <= 0.0 or max(abs(a), abs(b)) > FAR * max(course.usual, abs(course.value)):
         return None
-    left, right = flank(course, i, i - 1), flank(course, i + 1, i + 2)
+    left, right = fall_of_inverse(course, i, i - 1), fall_of_inverse(course, i + 1, i + 2)
     if left == right == 0.0 or left is None or right is None:
         return None
     width, ya, yb = other.x - one.x, 1.0 / abs(a), 1.0 / abs(b)
     if left == 0.0 or right == 0.0:
-        if is_met(course):
+        if {-1, 1} <= {sample.side for sample in course.samples}:  # it is met elsewhere
             return None
         end, inner, outer = (i, i + 1, i + 2) if left == 0.0 else (i + 1, i, i - 1)
         if keeps_rising(course, end, inner, outer):
@@ -51,7 +51,7 @@ def hidden_pole(course: MeasureCourse, i: int) -> float | None:
     return one.x + ahead if ya - left * ahead <= 0.0 else None
 
 
-def flank(course: MeasureCourse, k: int, outer: int) -> float | None:
+def fall_of_inverse(course: MeasureCourse, k: int, outer: int) -> float | None:
     """How fast 1/|m| falls from an outer sample to a sample, towards the inside; 0: there is none; None: it rises."""
     samples = course.samples
     if not 0 <= outer < len(samples) or course.parted(min(k, outer)):
@@ -64,11 +64,6 @@ def flank(course: MeasureCourse, k: int, outer: int) -> float | None:
     return float(rise / away / abs(own) / (abs(far) if own * far > 0.0 else abs(own)))
 
 
-def is_met(course: MeasureCourse) -> bool:
-    """Whether samples lie on both sides of the value."""
-    return len({sample.gap > 0.0 for sample in course.samples if sample.gap is not None}) > 1
-
-
 def keeps_rising(course: MeasureCourse, end: int, inner: int, outer: int) -> bool:
     """Whether the measure at an end of the course is what an exponential rise from two samples makes of it, to LAGS."""
     x = [course.samples[k].x for k in (end, inner, outer)]
@@ -77,3 +72,11 @@ def keeps_rising(course: MeasureCourse, end: int, inner: int, outer: int) -> boo
         return True
     power = abs(x[0] - x[1]) / abs(x[1] - x[2])
     return math.log(m[0] / m[1]) > math.log(m[1] / m[2]) * power + math.log(LAGS)
+
+
+def is_far(course: MeasureCourse, one: Sample, other: Sample) -> bool:
+    """Whether two neighbours lie so far off, beside a pole, that the course does not come back between them."""
+    if not one.side or one.side != other.side:
+        return False
+    least = min(abs((sample.gap or 0.0) + course.value) for sample in (one, other))
+    return least > FAR * max(course.usual, abs(course.value))
