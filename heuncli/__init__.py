@@ -8,23 +8,23 @@ from __future__ import annotations
 
 TYPE_CHECKING = False  # that of `typing` takes 2 ms
 if TYPE_CHECKING:
-    from heuncli.door import solve as solve
-    from heuncli.door import solve_cases as solve_cases
-    from heuncli.door import validate as validate
-    from heuncli.errors import HeunError as HeunError
-    from heuncli.errors import LimitError as LimitError
-    from heuncli.errors import OutputError as OutputError
-    from heuncli.errors import Problem as Problem
-    from heuncli.errors import SolveError as SolveError
-    from heuncli.errors import SourceLocation as SourceLocation
-    from heuncli.errors import SpecError as SpecError
-    from heuncli.errors import UsageError as UsageError
-    from heuncli.in_python.asked_run import UnknownPath as UnknownPath
-    from heuncli.in_python.diagrams import Diagram as Diagram
-    from heuncli.in_python.measured import Number as Number
-    from heuncli.in_python.signals import Signal as Signal
-    from heuncli.in_python.solved import Solved as Solved
-    from heuncli.in_python.warned import HeunWarning as HeunWarning
+    from heuncli.app.api import solve as solve
+    from heuncli.app.api import solve_cases as solve_cases
+    from heuncli.app.api import validate as validate
+    from heuncli.app.python.asked_run import UnknownPath as UnknownPath
+    from heuncli.app.python.diagrams import Diagram as Diagram
+    from heuncli.app.python.measured import Number as Number
+    from heuncli.app.python.signals import Signal as Signal
+    from heuncli.app.python.solved import Solved as Solved
+    from heuncli.app.python.warned import HeunWarning as HeunWarning
+    from heuncli.base.errors import HeunError as HeunError
+    from heuncli.base.errors import LimitError as LimitError
+    from heuncli.base.errors import OutputError as OutputError
+    from heuncli.base.errors import Problem as Problem
+    from heuncli.base.errors import SolveError as SolveError
+    from heuncli.base.errors import SourceLocation as SourceLocation
+    from heuncli.base.errors import SpecError as SpecError
+    from heuncli.base.errors import UsageError as UsageError
     from heuncli.version import VERSION as __version__
 
 HOME = {  # each name, and the module that it is in

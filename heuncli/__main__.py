@@ -17,7 +17,8 @@ import os
 import sys
 import warnings
 
-from heuncli.cli import at_once, leaving
+from heuncli.app.cli import at_once
+from heuncli.base import signals
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 MANY = 500_000  # objects made between two searches for dead cycles; 700 by default: 20 ms while modules are loaded
@@ -25,17 +26,17 @@ MANY = 500_000  # objects made between two searches for dead cycles; 700 by defa
 
 def main() -> None:
     """Run the command line and leave with its exit code."""
-    leaving.listen()
+    signals.listen()
     gc.set_threshold(MANY)
     fill_gaps()
     if not sys.warnoptions and os.environ.get("HEUN_DEBUG") != "1":
         warnings.simplefilter("ignore")  # a net: what warns is mended where it arises, and is an error in tests
     code = 0
     if not at_once.answered(sys.argv[1:]):
-        from heuncli.cli.entry import enter  # after the environment is set
+        from heuncli.app.cli.entry import enter  # after the environment is set
 
         code = enter(sys.argv[1:])
-    leaving.deafen()
+    signals.deafen()
     gc.freeze()  # all memory goes with the process: the search at its end would take 30 ms
     sys.exit(code)
 
@@ -45,7 +46,7 @@ def command() -> None:
     try:
         main()
     except SystemExit as leave:
-        leaving.end(int(leave.code or 0))
+        signals.end(int(leave.code or 0))
         raise
 
 

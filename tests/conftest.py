@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import alarm
-from heuncli.cli.entry import enter
+from heuncli.app.cli import alarm
+from heuncli.app.cli.entry import enter
+from heuncli.base.nearest import begin_file
 from heuncli.kernel.form import FOLDER, KERNEL  # refused where the compiled kernel is older than its text
-from heuncli.nearest import begin_file
 from tests.shared.command import SPEC_TEXTS, Done, Heun
 from tests.shared.processes import hand_down_signals
 

@@ -3,7 +3,7 @@
 The margin of a one-sided row, its gap while it is open and its multiplier while it is closed (times its sense), is
 followed along the dense output and bounded by its second differences; parts in doubt are halved, from left to right.
 The step is done again up to there, until both agree. What happens then is decided outside
-(integration/contacts/restitution.py).
+(motion/integration/contacts/restitution.py).
 """
 
 from __future__ import annotations

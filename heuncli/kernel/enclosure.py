@@ -563,7 +563,7 @@ def joined(a: Span, b: Span) -> Span:
 
 
 def bent(pieces: Span) -> Span:
-    """Pieces with knots between: curves go on in one direction there (expressions/curves.py), lines do not."""
+    """Pieces with knots between: curves go on in one direction there (scene/expressions/curves.py), lines do not."""
     return Span(pieces.value, pieces.rate, anything()) if is_zero(pieces.second) else pieces
 
 

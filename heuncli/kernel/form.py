@@ -14,7 +14,7 @@ from __future__ import annotations
 import os
 from importlib.machinery import EXTENSION_SUFFIXES
 
-from heuncli.errors import HeunError, Problem
+from heuncli.base.errors import HeunError, Problem
 from heuncli.kernel.modules import NAME
 from heuncli.kernel.sources import digest_code, digest_texts, newer_than
 

@@ -2,7 +2,7 @@
 
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
-Rows of NumPy tables (tree/tables.py makes their types from these classes) are the compiled kernel's memory; the plain
+Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory; the plain
 kernel makes objects of them. Fields up to the blank line are given when the scene is packed, the others are the
 kernel's own. World axes unless said otherwise; `a` is throughout the acceleration less that of gravity.
 """
@@ -352,7 +352,7 @@ class Island(Record):
 
 
 class Limits(Record):
-    """Thresholds of the kernel: heuncli/tolerances.py derives each."""
+    """Thresholds of the kernel: heuncli/base/tolerances.py derives each."""
 
     dodges: int  # lengths tried for a step whose stages come near to a singular pose
     no_inertia: float  # of all directions' inertia: what has less moves nothing

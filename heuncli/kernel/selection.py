@@ -2,7 +2,7 @@
 
 The rank of the closures is a matter of geometry: neither masses nor squares have a say in it. J on the tree's freedoms,
 island by island; turns and couples by the island's length, which makes rows of the order of 1, and those with longer
-levers are shortened to that. The verdicts judge the same matrix (redundancy/self_stress.py).
+levers are shortened to that. The verdicts judge the same matrix (loads/redundancy/self_stress.py).
 """
 
 from __future__ import annotations

@@ -46,7 +46,7 @@ class Struct(metaclass=Fields):
 
 
 class Record(Struct):
-    """A row of a table (tree/tables.py): in plain Python made of nested tuples, as NumPy gives them."""
+    """A row of a table (multibody/tree/tables.py): in plain Python made of nested tuples, as NumPy gives them."""
 
     def __init__(self, row: Iterable[Any]) -> None:
         known = vars(sys.modules[type(self).__module__])

@@ -204,7 +204,7 @@ class Instants(Value):
     holding: list[float]  # which contacts are closed, and how; where latches hold
     times: list[float]
     states: list[float]  # settled in place
-    bodies: list[float]  # the answers, a kind each (tree/tables.py)
+    bodies: list[float]  # the answers, a kind each (multibody/tree/tables.py)
     freedoms: list[float]
     loads: list[float]
     rows: list[float]

@@ -16,13 +16,13 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from heuncli.errors import SolveError
-from heuncli.joint_kinds import JOINTS
-from heuncli.records import replace
-from heuncli.results import Block
-from heuncli.results_schema import SHARES
-from heuncli.spec.models import ResultCondition, Spec, Stop
-from heuncli.stages import ANEW, Stages
+from heuncli.base.errors import SolveError
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.records import replace
+from heuncli.multibody.stages import ANEW, Stages
+from heuncli.results.results import Block
+from heuncli.results.results_schema import SHARES
+from heuncli.scene.file_format.models import ResultCondition, Spec, Stop
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover
 from heuncli.study.compose.results import compose, impulses_of
@@ -35,7 +35,7 @@ from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.solve.history import integrate
 
 if TYPE_CHECKING:
-    from heuncli.integration.methods.method import Method
+    from heuncli.motion.integration.methods.method import Method
 
 
 def solve(spec: Spec, options: Options | None = None, stages: Stages = ANEW) -> Study:
@@ -112,7 +112,7 @@ def describe(spec: Spec, *, reduce: bool = True) -> Block:
 
     Raises as `solve` does.
     """
-    from heuncli.redundancy.advice import advice  # runs give none
+    from heuncli.loads.redundancy.advice import advice  # runs give none
     from heuncli.study.model.forecast import noticed, outlook
 
     with placed(spec):

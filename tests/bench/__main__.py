@@ -21,20 +21,20 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from heuncli.integration.run.request import MotionTask
+from heuncli.motion.integration.run.request import MotionTask
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # as the command sets it, before NumPy is loaded
 
 import numpy as np
 
-from heuncli.integration.run.runner import Runner
 from heuncli.kernel.choose import KERNEL
-from heuncli.report.export import to_csv, to_json
-from heuncli.report.labels import labels_of
-from heuncli.spec.load import load
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.output.tables.export import to_csv, to_json
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.workflow import solve
-from heuncli.tree.prepare import PreparedScene
 from tests.bench.auto import table
 from tests.bench.balance import balanced
 from tests.bench.causes import by_cause

@@ -16,19 +16,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.integration.check.distance import Marks, motion_error
-from heuncli.integration.check.estimate import recovered_at
-from heuncli.integration.check.instants import interleaved
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.integration.segments import discontinuities_of
-from heuncli.integration.trajectory import Trajectory
-from heuncli.method_rows import DEFAULT, METHODS
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.base.errors import HeunError
+from heuncli.base.method_rows import DEFAULT, METHODS
+from heuncli.motion.integration.check.distance import Marks, motion_error
+from heuncli.motion.integration.check.estimate import recovered_at
+from heuncli.motion.integration.check.instants import interleaved
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup, set_up
 from heuncli.study.workflow import solve

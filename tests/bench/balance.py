@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.balancing.asked import AskedWeight, BalanceOptions
-from heuncli.balancing.study import balance
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.analyses.balancing.study import balance
+from heuncli.scene.file_format.load import load
 
 ENGINE = Path(__file__).parents[2] / "specs" / "six_cylinder.yaml"
 RATE = 2000.0 * math.pi / 30.0

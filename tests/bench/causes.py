@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import recover

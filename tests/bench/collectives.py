@@ -8,11 +8,11 @@ from typing import TypeVar
 
 import numpy as np
 
-from heuncli.collectives.counted import Counting, LoadHistory, counted
-from heuncli.spec.load import load
+from heuncli.output.snapshots.collectives import collectives
+from heuncli.scene.file_format.load import load
+from heuncli.study.load_cycles.counted import Counting, LoadHistory, counted
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling.collectives import collectives
 from tests.shared.folders import SPECS
 
 T = TypeVar("T")

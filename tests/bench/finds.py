@@ -7,7 +7,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.folders import SPECS
 
 FINDS = (

@@ -18,9 +18,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from heuncli import tolerances
-from heuncli.errors import HeunError
-from heuncli.results import Results
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Results
 from heuncli.study.ask.study import Study
 from tests.oracle.scenes import ALL_KINDS, random_scene
 from tests.oracle.tellings import with_cuts

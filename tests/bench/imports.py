@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 from tests.shared.imported import imported
 from tests.shared.urdf_trees import random_robot, urdf_text
 

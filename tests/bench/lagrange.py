@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from heuncli.commands.lagrange.options import range_of
-from heuncli.commands.lagrange.over import over
-from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.over import over
+from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.app.commands.lagrange.options import range_of
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.folders import ROOT
 

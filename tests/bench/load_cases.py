@@ -7,13 +7,13 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.decks.naming import DeckNames
-from heuncli.decks.registry import DECKS
-from heuncli.load_cases.gathered import gathered
-from heuncli.spec.load import load
+from heuncli.analyses.load_cases.gathered import gathered
+from heuncli.output.fe_decks.naming import DeckNames
+from heuncli.output.fe_decks.registry import DECKS
+from heuncli.scene.file_format.load import load
+from heuncli.study.ask.asked_instants import parse
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling.asked_instants import parse
 
 SPECS = Path(__file__).parents[2] / "specs"
 CASES = (

@@ -16,15 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ellipk, ellipkinc
 
-from heuncli.errors import HeunError, LimitError, SolveError
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.method_rows import METHODS
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError, LimitError, SolveError
+from heuncli.base.method_rows import METHODS
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.bench.chart import chart
 

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.meshes.reading import mesh_of, soup_of
-from heuncli.shapes.figure_kinds import CuttingPlanes
-from heuncli.shapes.figures import figure_of
-from heuncli.shapes.forms import form
-from heuncli.spec.models import Shape
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.meshes.reading import mesh_of, soup_of
+from heuncli.scene.shapes.figure_kinds import CuttingPlanes
+from heuncli.scene.shapes.figures import figure_of
+from heuncli.scene.shapes.forms import form
 from tests.bench.load_cases import least_ms
 from tests.shared import triangles as t
 

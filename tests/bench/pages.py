@@ -11,7 +11,7 @@ import tempfile
 import time
 from pathlib import Path
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.bench.generated import chain
 from tests.shared.chromium import Chromium, Tab, found
 from tests.shared.folders import SPECS

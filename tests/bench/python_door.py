@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import heuncli
-from heuncli.cli.entry import enter
-from heuncli.results_schema import REPORTS
+from heuncli.app.cli.entry import enter
+from heuncli.results.results_schema import REPORTS
 from tests.shared.folders import SPECS
 
 EXPORTED = [name for name in REPORTS if name != "points"]  # as JSON has them

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from heuncli.kernel.choose import KERNEL
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import EVERYTHING, asked_by
 from heuncli.study.model.setup import set_up

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from heuncli.client_report.as_html import as_html
-from heuncli.client_report.as_markdown import as_markdown
-from heuncli.client_report.contents import report_of
-from heuncli.commands.reporting.cases import reported
-from heuncli.commands.reporting.request import ReportRequest
+from heuncli.app.commands.reporting.cases import reported
+from heuncli.app.commands.reporting.request import ReportRequest
+from heuncli.output.client_report.as_html import as_html
+from heuncli.output.client_report.as_markdown import as_markdown
+from heuncli.output.client_report.contents import report_of
 
 SPECS = Path(__file__).parents[2] / "specs"
 NAMES = ("engine", "axle_loads", "crane_load")

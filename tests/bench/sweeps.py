@@ -16,7 +16,7 @@ from tests.shared.folders import ROOT, SPECS
 from tests.shared.shell import ENVIRONMENT
 
 TRUSS = ROOT / "heuncli" / "starters" / "truss.yaml"
-PEAK = "import resource,sys;from heuncli.cli.entry import enter;enter(sys.argv[1:]);" + (
+PEAK = "import resource,sys;from heuncli.app.cli.entry import enter;enter(sys.argv[1:]);" + (
     "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)"
 )
 

@@ -7,12 +7,12 @@ import time
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from heuncli.results_schema import REPORTS
-from heuncli.spec.load import load
+from heuncli.analyses.variants.prepared import Variants
+from heuncli.results.results_schema import REPORTS
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.variants.prepared import Variants
 from tests.bench.finds import finds
 from tests.shared.folders import ROOT, SPECS
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.chromium import Chromium, found
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.chromium import Chromium, Tab
 from tests.shared.command import TURNED
 

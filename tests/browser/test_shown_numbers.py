@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results_schema import REPORTS
+from heuncli.results.results_schema import REPORTS
 from tests.shared.chromium import Chromium, Tab
 from tests.shared.folders import SPECS
 from tests.shared.shown_numbers import frames, numbers, of_run, to_frame

@@ -14,12 +14,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.run.runner import Runner
 from heuncli.kernel.choose import KERNEL
-from heuncli.results import Results
-from heuncli.results_paths import find
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.results.results import Results
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.ask.study import Study
 from heuncli.study.compose import blocks, recovery, results

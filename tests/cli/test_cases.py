@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from tests.shared.command import HANGING, Heun
 
 CASES = """\

@@ -13,9 +13,9 @@ from typing import Any, cast
 
 import pytest
 
-from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartRow
-from heuncli.commands.charting.runs import ChartRuns, TimedRun
-from heuncli.drawing import matplotlib_file
+from heuncli.analyses.charting.results import COMPLETED, ChartedRun, ChartRow
+from heuncli.analyses.charting.runs import ChartRuns, TimedRun
+from heuncli.output.drawing import matplotlib_file
 from tests.shared.command import HANGING, SPEC_TEXTS, TURNED, Heun
 
 FEW = ("--methods", "DOP853", "--tolerances", "1e-4,1e-8")
@@ -138,7 +138,7 @@ def test_a_run_that_fails_is_that_error(heun: Heun, folder: Path) -> None:
 
 
 def test_beyond_the_time_limit_rows_are_told_not_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
-    from heuncli.commands.charting.motion import ChartedMotion
+    from heuncli.analyses.charting.motion import ChartedMotion
 
     monkeypatch.setattr(ChartedMotion, "late", True)
     found = json.loads(heun("chart", "swinging.yaml", *FEW, "--time-limit", "60", "--format", "json").stdout)

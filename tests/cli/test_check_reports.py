@@ -10,11 +10,11 @@ import pytest
 import xmlschema
 from junitparser import Error, Failure, JUnitXml, Skipped
 
-from heuncli.commands.check.checked import Checked
-from heuncli.commands.check.junit import junit_text
-from heuncli.errors import Problem
-from heuncli.report.workflow_lines import MOST, Annotation, lines
-from heuncli.telling.outcomes import Outcome
+from heuncli.app.commands.check.checked import Checked
+from heuncli.app.commands.check.junit import junit_text
+from heuncli.base.errors import Problem
+from heuncli.output.snapshots.outcomes import Outcome
+from heuncli.output.tables.workflow_lines import MOST, Annotation, lines
 from tests.shared.command import HANGING, Heun
 
 SCHEMA = xmlschema.XMLSchema(str(Path(__file__).with_name("junit.xsd")))

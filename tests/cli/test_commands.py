@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.errors import SpecError
-from heuncli.spec.load import load_with_cases
+from heuncli.app.cli.entry import enter
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load_with_cases
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
 
 
@@ -300,7 +300,7 @@ def test_a_limit_that_nothing_can_keep(heun: Heun, spec: str) -> None:
 
 def test_a_limit_is_kept_to_the_end_of_a_run(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole of this run is one look at the clock to the next."""
-    monkeypatch.setattr("heuncli.integration.run.runner.time.monotonic", map(float, itertools.count()).__next__)
+    monkeypatch.setattr("heuncli.motion.integration.run.runner.time.monotonic", map(float, itertools.count()).__next__)
     done = heun("run", "swinging.yaml", "--time-limit", "1.5")
     assert done.returncode == 4
     assert "reached at t = 1 s of 1 s" in done.stderr
@@ -326,7 +326,7 @@ def test_no_trouble_reaches_a_user_as_a_traceback(
     def fail(*_: object, **__: object) -> None:
         raise trouble
 
-    monkeypatch.setattr("heuncli.commands.run.command.read", fail)
+    monkeypatch.setattr("heuncli.app.commands.run.command.read", fail)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun("run", "hanging.yaml")
     assert (done.returncode, done.stdout) == (code, "")
@@ -352,7 +352,7 @@ def test_what_goes_wrong_in_one_file_is_told_of_it_alone(
         return load_with_cases(path, **words)
 
     module = {"check": "checking"}.get(command, "command")
-    monkeypatch.setattr(f"heuncli.commands.{command}.{module}.load_with_cases", fail_once)
+    monkeypatch.setattr(f"heuncli.app.commands.{command}.{module}.load_with_cases", fail_once)
     monkeypatch.delenv("HEUN_DEBUG", raising=False)
     done = heun(command, "expecting.yaml", "swinging.yaml", "failing.yaml", "wrong.yaml")
     assert done.returncode == (code if code == 70 else 2)

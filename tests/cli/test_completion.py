@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.command import HANGING
 from tests.shared.shell import ENVIRONMENT
 

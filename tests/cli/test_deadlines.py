@@ -20,10 +20,11 @@ import pytest
 import yaml
 
 import heuncli
-from heuncli.cli import alarm, files
-from heuncli.errors import LimitError
-from heuncli.integration import evaluator
-from heuncli.spec.load import load
+from heuncli.app.cli import alarm
+from heuncli.base import files
+from heuncli.base.errors import LimitError
+from heuncli.motion.integration import evaluator
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.command import HANGING, Heun
 from tests.shared.folders import ROOT, SPECS
@@ -75,28 +76,32 @@ def foreign(*_: Any, **__: Any) -> Any:
 @pytest.mark.parametrize(
     ("slow", "words", "phase"),
     [
-        ("heuncli.spec.load.read", "run hanging.yaml", "while the spec was read"),
-        ("heuncli.spec.load.read", "validate hanging.yaml", "while the spec was read"),
+        ("heuncli.scene.file_format.load.read", "run hanging.yaml", "while the spec was read"),
+        ("heuncli.scene.file_format.load.read", "validate hanging.yaml", "while the spec was read"),
         ("heuncli.study.model.setup.prepare_coupled", "run hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "model hanging.yaml", "while the scene was set up"),
         ("heuncli.study.model.setup.prepare_coupled", "modes hanging.yaml", "while the scene was set up"),
-        ("heuncli.rest.search.slopes", "run rest.yaml", "on the way to the rest pose"),
-        ("heuncli.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
+        ("heuncli.loads.equilibrium.search.slopes", "run rest.yaml", "on the way to the rest pose"),
+        ("heuncli.scene.expressions.discontinuities._changes", "run driven.yaml", "while jumps in time were searched"),
         (
-            "heuncli.integration.check.estimate.instants_of",
+            "heuncli.motion.integration.check.estimate.instants_of",
             "run swinging.yaml",
             "while the motion was integrated and checked",
         ),
-        ("heuncli.integration.check.estimate.instants_of", "check swinging.yaml", "swinging.yaml: the time limit"),
+        (
+            "heuncli.motion.integration.check.estimate.instants_of",
+            "check swinging.yaml",
+            "swinging.yaml: the time limit",
+        ),
         ("heuncli.study.compose.recovery.body_states", "run swinging.yaml", "while loads were computed"),
         (
             "heuncli.study.search.extremes.highest",
             "run swinging.yaml",
             "while extremes between the samples were searched",
         ),
-        ("heuncli.commands.run.scene._report", "run swinging.yaml", "before the work was done"),
+        ("heuncli.app.commands.run.scene._report", "run swinging.yaml", "before the work was done"),
         (
-            "heuncli.commands.probing.study.growing",
+            "heuncli.analyses.probing.study.growing",
             "probe swinging.yaml",
             "while the neighbourhood of the motion was looked at",
         ),
@@ -234,7 +239,7 @@ def test_of_several_specs_only_the_one_that_does_not_stop_is_lost(
     heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     (folder / "rest.yaml").write_text(REST)
-    monkeypatch.setattr("heuncli.rest.search.slopes", foreign)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.slopes", foreign)
     monkeypatch.setattr(alarm, "HARD_END", 0.2)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "0.5")
     assert done.returncode == 4
@@ -274,7 +279,7 @@ def test_a_limit_in_a_thread_of_a_program_uses_no_signal_and_ends_nothing_else()
 def test_each_spec_has_its_own_limit(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The others are checked all the same."""
     (folder / "rest.yaml").write_text(REST)
-    monkeypatch.setattr("heuncli.rest.search.slopes", rung)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.slopes", rung)
     done = heun("check", "rest.yaml", "expecting.yaml", "--time-limit", "60")
     assert done.returncode == 4
     assert "1 passed, 0 failed, 1 spec not solved" in done.stdout
@@ -301,7 +306,7 @@ def test_what_goes_out_goes_out_whole(heun: Heun, folder: Path, monkeypatch: pyt
 def test_what_is_still_made_is_given_up(heun: Heun, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a file that is written whole or not at all the limit holds until its last piece is made."""
     (folder / "out.json").write_text("old")
-    monkeypatch.setattr("heuncli.report.export._text", rung)
+    monkeypatch.setattr("heuncli.output.tables.export._text", rung)
     done = heun("run", "hanging.yaml", "-o", "out.json", "--time-limit", "60")
     assert (done.returncode, done.stdout) == (4, "")
     assert "while the results were written down" in done.stderr

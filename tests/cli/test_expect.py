@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import Problem, SolveError, SourceLocation, SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import Problem, SolveError, SourceLocation, SpecError
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask import expectations as expect
 from heuncli.study.ask.expectations import compare
 from heuncli.study.model.options import Options

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.explain.codes import codes_of
-from heuncli.commands.explain.command import PAGES
-from heuncli.results_schema import NAMES, ROWS, Quantity
+from heuncli.app.commands.explain.codes import codes_of
+from heuncli.app.commands.explain.command import PAGES
+from heuncli.results.results_schema import NAMES, ROWS, Quantity
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS

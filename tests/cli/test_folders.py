@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.check.folders import Found, PassedBy, specs_below
+from heuncli.app.commands.check.folders import Found, PassedBy, specs_below
 from tests.shared.command import SPEC_TEXTS, Heun
 
 EXPECTING = SPEC_TEXTS["expecting"]

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.cli.output import as_bytes
-from heuncli.foreign_text import escaped, shown
-from heuncli.wrapping import wrapped
+from heuncli.app.cli.entry import enter
+from heuncli.app.cli.output import as_bytes
+from heuncli.base.foreign_text import escaped, shown
+from heuncli.base.wrapping import wrapped
 from tests.shared.command import HANGING, Heun
 
 EVIL = "a\nheun: fine \x1b[31m\x07\x08\r\x9b31m\x7f\u202e\u2066\u200b\u2028\U000e0041b"

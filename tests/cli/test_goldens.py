@@ -13,14 +13,14 @@ from typing import Any
 
 import pytest
 
-from heuncli.cli import files
-from heuncli.spec.load import load
+from heuncli.base import files
+from heuncli.output.snapshots.changes import changes
+from heuncli.output.snapshots.keep import keep
+from heuncli.output.snapshots.kept import KeptNumber, KeptRun, read_kept, text_of
+from heuncli.output.snapshots.selection import told_by_default
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling.changes import changes
-from heuncli.telling.keep import keep
-from heuncli.telling.kept import KeptNumber, KeptRun, read_kept, text_of
-from heuncli.telling.selection import told_by_default
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 

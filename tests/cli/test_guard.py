@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.command import HANGING, Heun
 
 TABLE = "tables: {g: {file: data/t.csv, x: 1, y: 2}}\n"
@@ -65,7 +65,7 @@ def test_what_is_read_stays(
 ) -> None:  # fmt: skip
     """Refused before anything is solved."""
     for solving in ("run.scene.solve_spec", "check.checking.solve"):
-        monkeypatch.setattr(f"heuncli.commands.{solving}", None)
+        monkeypatch.setattr(f"heuncli.app.commands.{solving}", None)
     before, inode = (scene / read).read_bytes(), (scene / read).stat().st_ino
     form = () if writer[1] != "-o" else ("--format", "json")
     done = heun(writer[0], "scene.yaml", writer[1], named(scene / read), *form)

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import jobs
-from heuncli.commands.check import command
-from heuncli.errors import LimitError
-from heuncli.variants.asking import Answer, Asker
+from heuncli.analyses.variants.asking import Answer, Asker
+from heuncli.app.cli import jobs
+from heuncli.app.commands.check import command
+from heuncli.base.errors import LimitError
 from tests.shared.command import HANGING, SPEC_TEXTS, Heun
 from tests.shared.folders import SPECS
 from tests.shared.processes import wait_until_solving

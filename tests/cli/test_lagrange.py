@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange.forms import KEYS
-from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
-from heuncli.errors import HeunError
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.app.commands.lagrange.forms import KEYS
+from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double

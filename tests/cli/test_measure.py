@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.telling import measure
+from heuncli.base.errors import HeunError
+from heuncli.output.snapshots import measure
 from tests.shared.fakes import ACCURATE, FakeStudy
 
 STUDY = FakeStudy(np.linspace(0.0, 2.0, 21))

@@ -6,11 +6,11 @@ import json
 
 import pytest
 
-from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED
-from heuncli.integration.methods.registry import method_of
-from heuncli.method_rows import METHODS
-from heuncli.spec.methods import meant, unfit
-from heuncli.spec.words import METHOD_WORDS
+from heuncli.base.method_rows import METHODS
+from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.scene.file_format.methods import meant, unfit
+from heuncli.scene.file_format.words import METHOD_WORDS
 from tests.shared.command import SPEC_TEXTS, Heun
 
 

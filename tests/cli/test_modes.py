@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.oscillations.study import modes
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 
 SCENE = """\

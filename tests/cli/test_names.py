@@ -8,7 +8,7 @@ import json
 
 import pytest
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 
 WORDS = ["s", "side", "open", "about", "force", "moment", "kind", "line", "stress", "point", "supports", "x", "total"]
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.new.command import kinds
-from heuncli.published.files import names
-from heuncli.spec.load import load
+from heuncli.analyses.published.files import names
+from heuncli.app.commands.new.command import kinds
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 
 KINDS = (

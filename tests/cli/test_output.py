@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.files import ReaderGone, place_of
-from heuncli.cli.output import emit
-from heuncli.errors import OutputError
+from heuncli.app.cli.output import emit
+from heuncli.base.errors import OutputError
+from heuncli.base.files import ReaderGone, place_of
 from tests.shared.command import Heun
 
 
@@ -171,7 +171,7 @@ def test_rights_are_asked_for_before_the_work(
 
 def test_a_file_that_another_makes_while_it_is_looked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not there at the first look, there at the next."""
-    monkeypatch.setattr("heuncli.cli.files._state", lambda name: None)
+    monkeypatch.setattr("heuncli.base.files._state", lambda name: None)
     (tmp_path / "made").write_text("by another")
     place = place_of(str(tmp_path / "made"))
     assert place.ordinary

@@ -8,9 +8,9 @@ import sys
 
 import pytest
 
-from heuncli.cli import app, plain
-from heuncli.cli.options import fields_of
-from heuncli.cli.registry import COMMANDS
+from heuncli.app.cli import app, plain
+from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.registry import COMMANDS
 from tests.shared.loaded_modules import loaded_by
 
 WORDS = {

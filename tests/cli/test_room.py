@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import memory_left
-from heuncli.integration.run.step_records import GrowingRows
-from heuncli.integration.trajectory import Kept
-from heuncli.results_schema import REPORT_OF, REPORTS, SHARES
-from heuncli.spec.load import load
+from heuncli.base import memory_left
+from heuncli.motion.integration.run.step_records import GrowingRows
+from heuncli.motion.integration.trajectory import Kept
+from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.memory_estimate import in_words, numbers_by_block, two_digits
 from heuncli.study.model.options import Options
 from heuncli.study.model.selection import Selection
@@ -113,7 +113,7 @@ def test_a_library_that_finds_no_memory(heun: Heun, monkeypatch: pytest.MonkeyPa
     def fail(*_: object, **__: object) -> None:
         raise ImportError(said)
 
-    monkeypatch.setattr("heuncli.commands.run.command.read", fail)
+    monkeypatch.setattr("heuncli.app.commands.run.command.read", fail)
     assert heun("run", "hanging.yaml").returncode == code
 
 

@@ -18,14 +18,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.report.export import to_csv
-from heuncli.report.labels import labels_of
-from heuncli.results_paths import find
-from heuncli.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
-from heuncli.spec.load import load
+from heuncli.output.tables.export import to_csv
+from heuncli.results.results_paths import find
+from heuncli.results.results_schema import BLOWS, CUT, REPORTS, SHARES, beside_magnitudes, quantity
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, NotOneNumber, value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli import files
+from heuncli.base import files
 from tests.shared.folders import ROOT
 
 # Sends itself a signal, twice, when a module is looked for or a function of `os` is called; then runs the command.
@@ -33,8 +33,8 @@ def shot(call):
     return shooting
 from heuncli.__main__ import main
 if where.startswith("os."):
-    import heuncli.cli.files
-    from heuncli.cli import files
+    import heuncli.base.files
+    from heuncli.app.cli import files
     write = files.write
     def writing(*given):
         setattr(os, where[3:], shot(getattr(os, where[3:])))
@@ -56,7 +56,7 @@ def shot(number: int, where: str, folder: Path) -> subprocess.CompletedProcess[s
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("where", ["heuncli.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
+@pytest.mark.parametrize("where", ["heuncli.app.cli.entry", "yaml", "pydantic_core", "numpy", "heuncli.study.workflow"])
 def test_an_interrupt_while_something_is_imported(folder: Path, where: str) -> None:
     done = shot(signal.SIGINT, where, folder)
     assert (done.returncode, done.stdout, done.stderr) == (130, "", "heun: interrupted\n")
@@ -91,7 +91,7 @@ def test_a_signal_once_it_is_written_leaves_the_new_one(folder: Path, old: str |
 # Writes half of a file and dies, by a signal that nothing is done about.
 KILLED = """\
 import os, signal, sys
-from heuncli.cli import files
+from heuncli.app.cli import files
 if sys.argv[1] == "named":
     del os.O_TMPFILE
 def pieces():

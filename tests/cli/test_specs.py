@@ -15,15 +15,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.report.export import present, to_csv, to_json
-from heuncli.report.labels import labels_of
-from heuncli.report.series import walk
-from heuncli.results_paths import find
-from heuncli.spec.load import load
+from heuncli.app.cli.entry import enter
+from heuncli.output.tables.export import present, to_csv, to_json
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
+from heuncli.study.quantities.series import walk
 from heuncli.study.workflow import solve
 
 FOLDER = Path(__file__).parents[2] / "specs"

@@ -14,9 +14,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli import memory_left
-from heuncli.commands.sweep import workers
-from heuncli.variants.asking import Asker
+from heuncli.analyses.variants.asking import Asker
+from heuncli.app.commands.sweep import workers
+from heuncli.base import memory_left
 from tests.shared.command import Done, Heun
 from tests.shared.shell import ENVIRONMENT
 

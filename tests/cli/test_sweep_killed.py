@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import pytest
 
-from heuncli.commands.sweep import workers
-from heuncli.variants.asking import Asker
+from heuncli.analyses.variants.asking import Asker
+from heuncli.app.commands.sweep import workers
 from tests.shared.command import Heun
 from tests.shared.sweeps import (
     COUNT,

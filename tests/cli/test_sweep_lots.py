@@ -9,12 +9,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.sweep.cluster import worker as cluster_worker
-from heuncli.commands.sweep.cluster.lots import DEPTH, FIRST, GROWTH, MOST, SECONDS, WORKERS, Lot, Lots, Pace
-from heuncli.commands.sweep.cluster.worker import HELLO, HeldRecipe, Variant, answered, described
+from heuncli.analyses.variants.asking import Asker, Recipe
+from heuncli.app.commands.sweep.cluster import worker as cluster_worker
+from heuncli.app.commands.sweep.cluster.lots import DEPTH, FIRST, GROWTH, MOST, SECONDS, WORKERS, Lot, Lots, Pace
+from heuncli.app.commands.sweep.cluster.worker import HELLO, HeldRecipe, Variant, answered, described
+from heuncli.output.snapshots import measure
 from heuncli.study.model.options import Options
-from heuncli.telling import measure
-from heuncli.variants.asking import Asker, Recipe
 from heuncli.version import VERSION
 from tests.shared.command import TURNED
 

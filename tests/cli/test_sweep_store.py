@@ -12,9 +12,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import OutputError
-from heuncli.sweeps.store.store import Store
-from heuncli.variants.asking import Answer, Asker, Measured
+from heuncli.analyses.sweep_store.store.store import Store
+from heuncli.analyses.variants.asking import Answer, Asker, Measured
+from heuncli.base.errors import OutputError
 from tests.shared import triangles
 from tests.shared.command import HANGING, Done, Heun
 from tests.shared.shell import shell

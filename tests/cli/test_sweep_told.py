@@ -17,16 +17,16 @@ from typing import Any
 import pyarrow.parquet as pq
 import pytest
 
-from heuncli.commands.sweep.telling import as_parquet, told
-from heuncli.commands.sweep.telling.page import tables
-from heuncli.commands.sweep.telling.told import Telling
-from heuncli.report.table_units import Units, asked
-from heuncli.report.text_table import plain
-from heuncli.sweeps.rows import SweepHead, SweptMeasure, SweptRow
-from heuncli.variants.asking import Answer, Measured
-from heuncli.variants.axes import Drawn, ParameterAxis, axis_of
-from heuncli.variants.draws import draws_of
-from heuncli.variants.plans import Plan, plan_of
+from heuncli.analyses.sweep_store.rows import SweepHead, SweptMeasure, SweptRow
+from heuncli.analyses.variants.asking import Answer, Measured
+from heuncli.analyses.variants.axes import Drawn, ParameterAxis, axis_of
+from heuncli.analyses.variants.draws import draws_of
+from heuncli.analyses.variants.plans import Plan, plan_of
+from heuncli.app.commands.sweep.telling import as_parquet, told
+from heuncli.app.commands.sweep.telling.page import tables
+from heuncli.app.commands.sweep.telling.told import Telling
+from heuncli.output.tables.text_table import plain
+from heuncli.study.quantities.table_units import Units, asked
 from tests.shared.command import Heun
 
 LEVER = """\

@@ -7,8 +7,8 @@ import sys
 
 import pytest
 
-from heuncli.cli.terminal import LEAST_WIDTH, write
-from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.app.cli.terminal import LEAST_WIDTH, write
+from heuncli.output.tables.text_table import TextColumn, TextTable
 from tests.shared.command import Heun
 from tests.shared.shell import ENVIRONMENT
 
@@ -42,8 +42,8 @@ def test_no_escape_code_where_none_is_wanted(setting: dict[str, str], monkeypatc
 # Not in this process, whose own tests are told in lines of that width.
 OF_ANY_WIDTH = """\
 import os
-from heuncli.cli.terminal import width, write
-from heuncli.report.text_table import TextColumn, TextTable
+from heuncli.app.cli.terminal import width, write
+from heuncli.output.tables.text_table import TextColumn, TextTable
 wide = TextTable("JOINTS", (TextColumn("joint", "left"), TextColumn("F [N]")), (("pivot", "1.5"),), ())
 for columns in ("0", "1", "-5", "x", "9" * 30):
     os.environ["COLUMNS"] = columns

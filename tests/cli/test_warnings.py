@@ -17,7 +17,7 @@ DIVIDES = """
 import sys
 import numpy as np
 from heuncli import __main__
-from heuncli.cli import entry
+from heuncli.app.cli import entry
 entry.enter = lambda argv: int((np.ones(1) / np.zeros(1))[0] < 0)
 __main__.main()
 """
@@ -47,7 +47,7 @@ def test_a_deprecation_between_other_packages_ends_nothing(heun: Heun, monkeypat
         warnings.warn("'click.utils.get_binary_stream' is deprecated", DeprecationWarning, stacklevel=1)
         return 2
 
-    monkeypatch.setattr("heuncli.cli.app.read", deprecated)
+    monkeypatch.setattr("heuncli.app.cli.app.read", deprecated)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         assert heun("runn") == (2, "", "")

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.report.text_table import WIDTH
+from heuncli.app.cli.entry import enter
+from heuncli.output.tables.text_table import WIDTH
 
 SPECS = sorted((Path(__file__).parents[2] / "specs").glob("*.yaml"))
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.errors import SpecError
-from heuncli.results import Results
+from heuncli.base import tolerances
+from heuncli.base.errors import SpecError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved, study
 
 BAR = """

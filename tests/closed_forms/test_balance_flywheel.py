@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from heuncli.balancing.asked import AskedWheel, BalanceOptions
-from heuncli.balancing.results import Flywheel
-from heuncli.balancing.study import balance
-from heuncli.errors import SolveError
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import AskedWheel, BalanceOptions
+from heuncli.analyses.balancing.results import Flywheel
+from heuncli.analyses.balancing.study import balance
+from heuncli.base.errors import SolveError
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.cycling import RPM, balance_of
 

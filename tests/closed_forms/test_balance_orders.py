@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.balancing.asked import BalanceOptions
-from heuncli.balancing.study import balance
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.study import balance
+from heuncli.scene.file_format.load import load
 from tests.shared.cycling import RPM, Cylinder, amplitude, balance_of, engine, row_of
 
 SPECS = Path(__file__).parents[2] / "specs"

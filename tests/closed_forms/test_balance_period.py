@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.balancing.asked import BalanceOptions
-from heuncli.balancing.results import BalanceResults
-from heuncli.balancing.study import balance
-from heuncli.errors import SolveError
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.results import BalanceResults
+from heuncli.analyses.balancing.study import balance
+from heuncli.base.errors import SolveError
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 

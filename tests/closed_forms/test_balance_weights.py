@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.balancing.asked import AskedWeight, BalanceOptions
-from heuncli.balancing.results import BalanceResults, Counterbalance
-from heuncli.balancing.study import balance
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import AskedWeight, BalanceOptions
+from heuncli.analyses.balancing.results import BalanceResults, Counterbalance
+from heuncli.analyses.balancing.study import balance
+from heuncli.scene.file_format.load import load
 from tests.shared.cycling import RPM, Cylinder, balance_of, engine, four_bar
 
 SPECS = Path(__file__).parents[2] / "specs"

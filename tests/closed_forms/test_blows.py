@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Block
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Block
 from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import near, solved
 from tests.shared.slider_crank import JOINTS, slider_crank
@@ -63,8 +63,8 @@ def test_6_a_hinged_rod(h: object, value: float) -> None:
 
 def test_6_the_table_says_zero() -> None:
     """Not 1e-17: nothing but rounding of what it is summed from."""
-    from heuncli.report.labels import labels_of
-    from heuncli.report.page import page_of
+    from heuncli.output.tables.page import page_of
+    from heuncli.study.quantities.labels import labels_of
     from tests.shared.scenes import study
 
     run = study(hinged("2/3"))

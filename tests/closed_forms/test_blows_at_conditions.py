@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError, SpecError
-from heuncli.results import Results
+from heuncli.base.errors import HeunError, SpecError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved, study
 
 M, L, G, J, START = 2.0, 0.5, 9.81, 0.3, 0.4

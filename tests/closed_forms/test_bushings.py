@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from heuncli.errors import SolveError
-from heuncli.oscillations.study import modes
-from heuncli.shapes.rotations import hat
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base.errors import SolveError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.shapes.rotations import hat
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import near, solved
 

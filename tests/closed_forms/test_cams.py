@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.balancing.study import balance
-from heuncli.errors import SolveError
-from heuncli.results import Array
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
-from heuncli.tree.cam_flanks import flank_of
+from heuncli.analyses.balancing.study import balance
+from heuncli.base.errors import SolveError
+from heuncli.multibody.tree.cam_flanks import flank_of
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from tests.shared.cams import eccentric, lift, table
 from tests.shared.folders import ROOT
 from tests.shared.scenes import near, solved, study

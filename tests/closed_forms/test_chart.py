@@ -12,18 +12,18 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.commands.charting import runs as chart_runs
-from heuncli.commands.charting.motion import motion_of
-from heuncli.commands.charting.plan import ChartOptions
-from heuncli.commands.charting.reference import refer
-from heuncli.commands.charting.results import ChartedRun, ChartResults, ChartRow
-from heuncli.commands.charting.runs import ChartRuns
-from heuncli.commands.charting.study import chart
-from heuncli.integration.check.runs import Runs
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.trajectory import Trajectory
-from heuncli.spec.load import load
+from heuncli.analyses.charting import runs as chart_runs
+from heuncli.analyses.charting.motion import motion_of
+from heuncli.analyses.charting.plan import ChartOptions
+from heuncli.analyses.charting.reference import refer
+from heuncli.analyses.charting.results import ChartedRun, ChartResults, ChartRow
+from heuncli.analyses.charting.runs import ChartRuns
+from heuncli.analyses.charting.study import chart
+from heuncli.motion.integration.check.runs import Runs
+from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.scene.file_format.load import load
 
 SCENES = Path(__file__).parents[1] / "bench" / "scenes"
 REFERENCE = json.loads((SCENES / "reference.json").read_text())

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 from tests.shared.slider_crank import JOINTS, slider_crank
 

@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from scipy.special import ellipk, ellipkinc
 
-from heuncli.errors import SolveError
-from heuncli.integration.check.changes import Changes
-from heuncli.integration.conditions import Conditions, coordinates_at
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.motion.integration.check.changes import Changes
+from heuncli.motion.integration.conditions import Conditions, coordinates_at
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

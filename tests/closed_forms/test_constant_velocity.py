@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.scenes import solved
 
 BENDS = [0.0, 0.5235987755982988, 1.2]

@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.errors import SolveError, SpecError
-from heuncli.oscillations.study import modes
-from heuncli.report.heading import heading
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.output.tables.heading import heading
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.gear_trains import STATE, pair, pin, wheel
 from tests.shared.scenes import near, solved

@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError, SpecError
-from heuncli.expressions.beside import tightest
-from heuncli.expressions.curves import fit
-from heuncli.expressions.paths import cusp, path_beside, path_of
-from heuncli.results import Array
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.results.results import Array
+from heuncli.scene.expressions.beside import tightest
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.paths import cusp, path_beside, path_of
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved
 

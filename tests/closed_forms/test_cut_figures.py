@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.shapes.forms import Form, form
-from heuncli.spec.models import Shape
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.shapes.forms import Form, form
 from tests.shared.solids import SOLIDS, axis_of, beyond, difference, planes, unit
 
 X, Y, Z = np.eye(3)

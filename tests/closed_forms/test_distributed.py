@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.results import Array
-from heuncli.results_schema import REPORTS
-from heuncli.telling import measure
+from heuncli.base.errors import SpecError
+from heuncli.output.snapshots import measure
+from heuncli.results.results import Array
+from heuncli.results.results_schema import REPORTS
 from tests.shared.scenes import near, solved, study
 
 BEAM = """

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.measure import peak
 from tests.shared.one_freedom import Law, One, Passage, around, follows, moved, passes
 from tests.shared.scenes import near, solved, study

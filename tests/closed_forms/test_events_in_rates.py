@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.one_freedom import TOO_LONG, One, follows, moved
 from tests.shared.scenes import study
 

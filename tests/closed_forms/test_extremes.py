@@ -7,12 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.report.labels import labels_of
-from heuncli.report.page import page_of
-from heuncli.results_schema import REPORTS
+from heuncli.output.snapshots import measure
+from heuncli.output.tables.page import page_of
+from heuncli.results.results_schema import REPORTS
 from heuncli.study.ask.study import Study
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.telling import measure
 from tests.shared.measured import measured
 from tests.shared.scenes import near, study
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.errors import SolveError
+from heuncli.app.cli.entry import enter
+from heuncli.base.errors import SolveError
 from tests.oracle.read import start_state
 from tests.oracle.solve import solve
 from tests.oracle.values import to_yaml

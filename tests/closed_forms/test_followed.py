@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.methods.followed import FOLLOWED
-from heuncli.results import Array, Results
+from heuncli.base.errors import SolveError
+from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.followed import FOLLOWED
+from heuncli.results.results import Array, Results
 from tests.shared.gear_trains import pair
 from tests.shared.scenes import solved
 

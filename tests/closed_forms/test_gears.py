@@ -183,7 +183,7 @@ def test_three_planets_share_openly() -> None:
     ],
 )
 def test_what_no_gears_are_is_refused(change: dict[str, Any], code: str) -> None:
-    from heuncli.errors import SpecError
+    from heuncli.base.errors import SpecError
 
     with pytest.raises(SpecError) as refused:
         solved(pair(**change))
@@ -192,7 +192,7 @@ def test_what_no_gears_are_is_refused(change: dict[str, Any], code: str) -> None
 
 
 def test_gears_whose_axes_do_not_fit_are_refused() -> None:
-    from heuncli.errors import SpecError
+    from heuncli.base.errors import SpecError
 
     for axis, code in (((0, 1, 1), "gear-axes"), ((1, 0, 0), "gear-axes")):
         scene = pair(ratio=-3)
@@ -210,7 +210,7 @@ def test_gears_whose_axes_do_not_fit_are_refused() -> None:
 
 
 def test_rates_that_gears_do_not_have_are_refused() -> None:
-    from heuncli.errors import SolveError
+    from heuncli.base.errors import SolveError
 
     scene = pair(teeth=[20, 60])
     scene["joints"]["w"]["initial"] = {"rate": 1}

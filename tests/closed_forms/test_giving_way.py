@@ -8,7 +8,7 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import describe
 from tests.shared.scenes import near, solved
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import near, solved
 

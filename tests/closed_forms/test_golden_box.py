@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 EXACT = 1e-14  # the digits printed, relative to values of the order of 1

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved
 

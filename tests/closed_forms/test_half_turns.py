@@ -7,11 +7,11 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError, SolveError
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError, SolveError
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.bars import double
 from tests.shared.folders import SPECS

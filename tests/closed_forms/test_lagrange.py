@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange.options import range_of
-from heuncli.commands.lagrange.over import over
-from heuncli.commands.lagrange.results import InertiaCourse
-from heuncli.errors import SolveError
-from heuncli.shapes.rotations import hat
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.over import over
+from heuncli.analyses.lagrange.results import InertiaCourse
+from heuncli.app.commands.lagrange.options import range_of
+from heuncli.base.errors import SolveError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.shapes.rotations import hat
 from tests.oracle.published import START, andrews
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import double, told

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Results
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 CART = """

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.kinetostatics.auto_properties import Cutting, properties_of
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Array
-from heuncli.shapes.forms import form
-from heuncli.spec.load import load
-from heuncli.spec.models import Shape, Vec
+from heuncli.base.errors import HeunError
+from heuncli.loads.kinetostatics.auto_properties import Cutting, properties_of
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Shape, Vec
+from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.shapes.forms import form
 from heuncli.study.workflow import solve
 from tests.shared import triangles as t
 

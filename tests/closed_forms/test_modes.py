@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.linearisation.modes import SceneModes
-from heuncli.oscillations.study import modes
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.motion.linearisation.modes import SceneModes
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.governors import porter, spindle
 

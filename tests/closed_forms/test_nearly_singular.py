@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.tolerances import EPS
+from heuncli.base.errors import SolveError
+from heuncli.base.tolerances import EPS
 from tests.shared.scenes import near, solved
 from tests.shared.three_rods import three_rods
 

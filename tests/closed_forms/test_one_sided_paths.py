@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError, SpecError
+from heuncli.base.errors import SolveError, SpecError
 from tests.shared.cams import table
 from tests.shared.scenes import near, solved, study
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.scenes import near, solved
 
 G = 9.81

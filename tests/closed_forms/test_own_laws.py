@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError, SpecError
-from heuncli.expressions import composed
-from heuncli.expressions.grammar import Scope, compile_expression
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.scene.expressions import composed
+from heuncli.scene.expressions.grammar import Scope, compile_expression
 from tests.shared.scenes import near, solved
 
 BLOCK = """
@@ -176,7 +176,7 @@ def test_a_parameter_of_the_same_name() -> None:
 ])  # fmt: skip
 def test_a_coordinate_told_otherwise(text: str) -> None:
     """f(factor x), times g, within a limit: as the values are, on every branch."""
-    from heuncli.expressions.curves import fit
+    from heuncli.scene.expressions.curves import fit
 
     tables = {"c": fit("c", np.array([-20.0, 0.0, 2.0, 20.0]), np.array([1.0, 2.0, 5.0, 1.0]), "linear", None, None)}
     scope = Scope(joints={"own": "pin", "j": "pin"}, tables=tables, in_time=True)

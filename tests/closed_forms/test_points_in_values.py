@@ -8,7 +8,7 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 from scipy.special import ellipk
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.shared.scenes import near, solved, study
 
 G = 9.81

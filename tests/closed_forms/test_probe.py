@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.probing.numerics.stiffness import polynomial, reach
-from heuncli.commands.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
-from heuncli.commands.probing.study import probe
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.kernel_loop import KernelLoop
-from heuncli.spec.load import load
+from heuncli.analyses.probing.numerics.stiffness import polynomial, reach
+from heuncli.analyses.probing.results import DEAD_CENTRE, GIMBAL, HALF_TURN, SINGULAR, Probe
+from heuncli.analyses.probing.study import probe
+from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.kernel_loop import KernelLoop
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.shared.bars import HEAD, rods
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError, SpecError
-from heuncli.results import Results
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 TIMES = [0.0, 0.11, 0.25, 0.45, 0.52, 0.77, 1.0, 1.2]

@@ -11,17 +11,17 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, minimize_scalar
 
-from heuncli.errors import SolveError
-from heuncli.integration.run.request import MotionTask
-from heuncli.rest.coordinates import coordinates_of
-from heuncli.rest.directions import directions
-from heuncli.rest.pose import bearing
-from heuncli.rest.rest_check import require_still
-from heuncli.rest.search import MOST_STEPS
-from heuncli.rest.slopes import Slopes
-from heuncli.results import Array, Results
-from heuncli.shapes.rotations import from_vector
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.loads.equilibrium.coordinates import coordinates_of
+from heuncli.loads.equilibrium.directions import directions
+from heuncli.loads.equilibrium.pose import bearing
+from heuncli.loads.equilibrium.rest_check import require_still
+from heuncli.loads.equilibrium.search import MOST_STEPS
+from heuncli.loads.equilibrium.slopes import Slopes
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.load import load
+from heuncli.scene.shapes.rotations import from_vector
 from heuncli.study.ask.study import Study
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve
@@ -535,7 +535,7 @@ def test_a_way_that_ends_stretched(turned: str, monkeypatch: pytest.MonkeyPatch)
 
     At 10 rad/s it nears that pose until its steps are used up; of so many a tenth tells the same.
     """
-    monkeypatch.setattr("heuncli.rest.search.MOST_STEPS", MOST_STEPS // 10)
+    monkeypatch.setattr("heuncli.loads.equilibrium.search.MOST_STEPS", MOST_STEPS // 10)
     with pytest.raises(SolveError) as caught:
         solve(load(str(ROOT / "specs" / "governor.yaml"), overrides={"w": turned}))
     assert "singular pose" in caught.value.problems[0].message

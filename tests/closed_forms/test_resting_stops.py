@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.results import Results
+from heuncli.base.errors import SpecError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 G = 9.81

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.scenes import near, solved
 
 G = 9.81

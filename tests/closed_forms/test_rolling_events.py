@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange.instant import instant_of
-from heuncli.errors import SolveError
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.instant import instant_of
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import near, solved
 
 G = 9.81

@@ -7,8 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Results
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Results
 from tests.shared.scenes import solved
 
 G = 9.81

@@ -11,8 +11,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from heuncli.kinetostatics.stress import MODULI, stresses
-from heuncli.results import Array
+from heuncli.loads.kinetostatics.stress import MODULI, stresses
+from heuncli.results.results import Array
 
 Place = tuple[Array, Array]
 NAMES = ("N", "Q1", "Q2", "T", "M1", "M2")

@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Block
+from heuncli.results.results import Array, Block
 from tests.shared.scenes import near, solved
 
 F = np.array([700.0, -40.0, 25.0])  # N, Q1, Q2 = F

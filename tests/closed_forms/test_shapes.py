@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.shapes.forms import form
-from heuncli.shapes.inertia import properties
-from heuncli.spec.models import Shape
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.shapes.forms import form
+from heuncli.scene.shapes.inertia import properties
 from tests.shared.solids import SOLIDS, beyond, difference, moved, rotation
 
 RHO = 2.5

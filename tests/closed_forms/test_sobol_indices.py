@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.stats import sobol_indices as scipy_indices
 
-from heuncli.results import Array
-from heuncli.variants.axes import Drawn
-from heuncli.variants.draws import draws_of
-from heuncli.variants.indices import sobol_indices
+from heuncli.analyses.variants.axes import Drawn
+from heuncli.analyses.variants.draws import draws_of
+from heuncli.analyses.variants.indices import sobol_indices
+from heuncli.results.results import Array
 from tests.shared.command import Heun
 
 a, b = 7.0, 0.1

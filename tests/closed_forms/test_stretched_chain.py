@@ -11,8 +11,8 @@ import math
 
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Results
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 from tests.shared.stretched_chain import KINDS, stretched_chain
 

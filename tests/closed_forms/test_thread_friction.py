@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.errors import SolveError, SpecError
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import near, solved
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
 

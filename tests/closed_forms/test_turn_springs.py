@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
+from heuncli.base.errors import SpecError
 from tests.shared.scenes import near, solved
 
 PENDULUM = """

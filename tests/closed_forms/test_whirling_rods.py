@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 HEAD = "heun: 1\nground: {points: {O: [0, 0, 0], A: [0, 0, -0.25], B: [0, 0, 0.25]}}\n"

@@ -7,7 +7,7 @@ from math import sqrt
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.scenes import solved
 
 BAR = """\

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.collectives.counted import Collective, Counting, LoadHistory, counted
-from heuncli.collectives.rainflow import rainflow
-from heuncli.errors import HeunError
-from heuncli.report.results_json_schema import results_schema
-from heuncli.results import Array
+from heuncli.base.errors import HeunError
+from heuncli.output.snapshots.collectives import collective
+from heuncli.output.tables.results_json_schema import results_schema
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
-from heuncli.telling.collectives import collective
+from heuncli.study.load_cycles.counted import Collective, Counting, LoadHistory, counted
+from heuncli.study.load_cycles.rainflow import rainflow
 from tests.shared.command import HANGING, TURNED, Heun
 from tests.shared.folders import SPECS
 from tests.shared.scenes import study

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.collectives import classes
-from heuncli.collectives.equivalent import damage, equivalent_range
-from heuncli.collectives.rainflow import Cycles, endless, rainflow, repeated, turning_points
-from heuncli.results import Array
+from heuncli.results.results import Array
+from heuncli.study.load_cycles import classes
+from heuncli.study.load_cycles.equivalent import damage, equivalent_range
+from heuncli.study.load_cycles.rainflow import Cycles, endless, rainflow, repeated, turning_points
 
 pytestmark = pytest.mark.heavy  # no kernel in it
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.collectives.rainflow import turning_points
-from heuncli.results import Array
+from heuncli.results.results import Array
+from heuncli.study.load_cycles.rainflow import turning_points
 from heuncli.study.search.turnings import with_turnings
 
 COARSE, ERROR = 257, 1e-12

@@ -316,7 +316,7 @@ def record(out: Path, scenes_file: Path | None, quick: bool, jobs: int, root: Pa
     print(f"{said}, {package.parent}: {len(scenes)} scenes, {jobs} at a time", file=sys.stderr)
     for command in ("run", "model", "validate", "check"):
         with contextlib.suppress(ImportError):  # only saves the workers' time
-            __import__(f"heuncli.commands.{command}.command")
+            __import__(f"heuncli.app.commands.{command}.command")
     head = {"head": {"version": VERSION, "said": said, "root": str(root), "scenes": len(scenes), "quick": quick}}
     exits: Counter[Any] = Counter()
     slow: list[tuple[float, str]] = []

@@ -3,7 +3,7 @@
     HEUN_HARVEST=FILE.json.gz pytest -p tests.compare.harvest
 
 Every text that a test loads from a string, once, with its overrides and the tables it reads; at most MOST, in turn from
-each test. Not with several workers: each would write the file. Impure: replaces heuncli.spec.load.load, writes FILE.
+each test. Not with several workers: each would write the file. Impure: replaces heuncli.scene.file_format.load.load, writes FILE.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from itertools import chain, islice, zip_longest
 from pathlib import Path
 from typing import Any
 
-from heuncli.spec import load as module
+from heuncli.scene.file_format import load as module
 
 MOST = 1500
 LONGEST = 100_000  # characters

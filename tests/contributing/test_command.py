@@ -9,20 +9,20 @@ from tests.contributing.addition import Addition, Edit, heun
 WEIGH = Addition(
     "A command",
     {
-        "heuncli/cli/registry.py": (
+        "heuncli/app/cli/registry.py": (
             Edit('    Command("explain"),\n', '    Command("explain"),\n    Command("weigh"),\n'),
         ),
-        "heuncli/cli/help.txt": (
+        "heuncli/app/cli/help.txt": (
             Edit("  schema       Print", "  weigh        The mass of all bodies together.\n  schema       Print"),
         ),
     },
     {
-        "heuncli/commands/weigh/__init__.py": "",
-        "heuncli/commands/weigh/request.py": '''"""What `heun weigh` is asked for: its options and arguments."""
+        "heuncli/app/commands/weigh/__init__.py": "",
+        "heuncli/app/commands/weigh/request.py": '''"""What `heun weigh` is asked for: its options and arguments."""
 
 from typing import Annotated, NamedTuple
 
-from heuncli.cli.options import OUTPUT, SPEC
+from heuncli.app.cli.options import OUTPUT, SPEC
 
 
 class WeighRequest(NamedTuple):
@@ -31,12 +31,12 @@ class WeighRequest(NamedTuple):
     spec: Annotated[str, SPEC]
     output: Annotated[str | None, OUTPUT] = None
 ''',
-        "heuncli/commands/weigh/command.py": '''"""`heun weigh`: the mass of all bodies together."""
+        "heuncli/app/commands/weigh/command.py": '''"""`heun weigh`: the mass of all bodies together."""
 
-from heuncli.cli.output import emit
-from heuncli.commands.weigh.request import WeighRequest
-from heuncli.mechanism.build import build
-from heuncli.spec.load import load
+from heuncli.app.cli.output import emit
+from heuncli.app.commands.weigh.request import WeighRequest
+from heuncli.multibody.mechanism.build import build
+from heuncli.scene.file_format.load import load
 
 
 def main(request: WeighRequest) -> int:

@@ -11,7 +11,7 @@ from tests.contributing.addition import Addition, Edit, after, answers
 MIRROR = Addition(  # two joints whose coordinates are opposite: what the one turns, the other turns back
     "A coupling",
     {
-        "heuncli/spec/format_couplings.py": (
+        "heuncli/scene/file_format/format_couplings.py": (
             Edit("CouplingEntry = RatioEntry", """class MirrorEntry(Entry):
     type: Literal["mirror"]
     of: list[str]
@@ -21,7 +21,7 @@ CouplingEntry = MirrorEntry | RatioEntry"""),
             after("COUPLINGS: dict[str, type[CouplingEntry]] = {\n", """    "mirror": MirrorEntry,
 """),
         ),
-        "heuncli/spec/couplings.py": (
+        "heuncli/scene/file_format/couplings.py": (
             Edit("Coupling = (  # a union of the classes here\n", """class Mirror(NamedTuple):
     terms: tuple[Term, ...]
     type: Literal["mirror"] = "mirror"
@@ -35,7 +35,7 @@ Coupling = (  # a union of the classes here
     Mirror |
 """),
         ),
-        "heuncli/spec/resolve_couplings.py": (
+        "heuncli/scene/file_format/resolve_couplings.py": (
             Edit("MEANINGS: dict[str, Callable[..., c.Coupling]] = {\n", """def mirror(by, name, entry):
     return c.Mirror(tuple(term(by, word) for word in entry.of))
 
@@ -44,7 +44,7 @@ MEANINGS: dict[str, Callable[..., c.Coupling]] = {
     "mirror": mirror,
 """),
         ),
-        "heuncli/mechanism/build_couplings.py": (
+        "heuncli/multibody/mechanism/build_couplings.py": (
             Edit("MADE: dict[str, Callable[..., tuple[CoupledRow, ...]]] = {\n", """def mirror(given, drawn):
     return (CoupledRow(tuple(of_coordinate(drawn, x, 1.0) for x in given.terms), None, SIZE),)
 

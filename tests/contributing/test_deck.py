@@ -9,19 +9,21 @@ from tests.contributing.addition import Addition, Edit, after, heun
 PLAIN = Addition(
     "A form of load cases",
     {
-        "heuncli/decks/registry.py": (after('    "abaqus": Deck("abaqus"),\n', '    "plain": Deck("plain"),\n'),),
-        "heuncli/commands/exporting/request.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
+        "heuncli/output/fe_decks/registry.py": (
+            after('    "abaqus": Deck("abaqus"),\n', '    "plain": Deck("plain"),\n'),
+        ),
+        "heuncli/app/commands/exporting/request.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
     },
     {
-        "heuncli/decks/plain.py": '''"""Load cases as plain lines: the acceleration of the body, a block a case."""
+        "heuncli/output/fe_decks/plain.py": '''"""Load cases as plain lines: the acceleration of the body, a block a case."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.decks.naming import DeckNames, DeckNodes
-from heuncli.decks.readme import exact, readme
-from heuncli.load_cases.model import LoadCases
+from heuncli.output.fe_decks.naming import DeckNames, DeckNodes
+from heuncli.output.fe_decks.readme import exact, readme
+from heuncli.analyses.load_cases.model import LoadCases
 
 MARK = "!"
 

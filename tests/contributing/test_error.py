@@ -9,19 +9,19 @@ from tests.contributing.addition import Addition, Edit, heun
 LONG_TITLE = Addition(
     "An error",
     {
-        "heuncli/spec/rules/every.py": (
+        "heuncli/scene/file_format/rules/every.py": (
             Edit("    threads,\n)\n", "    threads,\n    titles,\n)\n"),
             Edit("expect, curves, not_yet,\n", "expect, curves, not_yet, titles,\n"),
         ),
     },
     {
-        "heuncli/spec/rules/titles.py": '''"""Titles."""
+        "heuncli/scene/file_format/rules/titles.py": '''"""Titles."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli.spec.rules.registry import DraftDocument, Violation, rule
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
 
 MOST = 60  # letters: with what stands before it a title is a line of a page
 

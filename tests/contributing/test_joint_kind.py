@@ -12,7 +12,7 @@ from tests.contributing.addition import Addition, Edit, after, answers, heun
 SLED = Addition(  # face on face: it slides on a plane and turns about the normal
     "A kind of joint",
     {
-        "heuncli/joint_kinds.py": (
+        "heuncli/base/joint_kinds.py": (
             after("""            synonyms=("cylindrical",),
         ),
 """, """        Kind(
@@ -21,7 +21,7 @@ SLED = Addition(  # face on face: it slides on a plane and turns about the norma
         ),
 """),
         ),
-        "heuncli/spec/format.py": (
+        "heuncli/scene/file_format/format.py": (
             Edit("JointEntry = (\n", """class SledJoint(AnyJoint):
     type: Literal["sled"]
     normal: Direction

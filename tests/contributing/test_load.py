@@ -11,7 +11,7 @@ from tests.contributing.addition import Addition, Edit, after, answers, heun
 COUNTERWEIGHT = Addition(  # a rope over a pulley, whose pull is the same at any length
     "A load",
     {
-        "heuncli/spec/format.py": (
+        "heuncli/scene/file_format/format.py": (
             Edit("    ForceInTime,\n", "    Force,\n    ForceInTime,\n"),
             Edit("LoadEntry = (\n", """class CounterweightEntry(Entry):
     type: Literal["counterweight"]
@@ -26,7 +26,7 @@ LoadEntry = (
             after("LOADS: dict[str, type[LoadEntry]] = {\n", """    "counterweight": CounterweightEntry,
 """),
         ),
-        "heuncli/spec/models.py": (
+        "heuncli/scene/file_format/models.py": (
             Edit("Force = (\n    PointForce | ", '''class Counterweight(NamedTuple):
     """A force that draws two points together, the same at any distance [N]."""
 
@@ -39,28 +39,28 @@ LoadEntry = (
 Force = (
     Counterweight | PointForce | '''),
         ),
-        "heuncli/spec/resolve.py": (
+        "heuncli/scene/file_format/resolve.py": (
             Edit("            case f.TurnSpringEntry():\n", """            case f.CounterweightEntry():
                 return m.Counterweight(self.end(load.from_), self.end(load.to), load.pull)
             case f.TurnSpringEntry():
 """),
         ),
-        "heuncli/spec/rules/references.py": (
+        "heuncli/scene/file_format/rules/references.py": (
             Edit("f.ActuatorEntry | f.SpringEntry):", "f.ActuatorEntry | f.SpringEntry | f.CounterweightEntry):"),
         ),
-        "heuncli/spec/rules/joints.py": (
+        "heuncli/scene/file_format/rules/joints.py": (
             after("not isinstance(load, f.ActuatorEntry | f.SpringEntry", " | f.CounterweightEntry"),
         ),
-        "heuncli/mechanism/build.py": (
+        "heuncli/multibody/mechanism/build.py": (
             Edit("        case m.Torque() | m.Motor():\n", """        case m.Counterweight():
             a, b = f.from_, f.to
             ends = index[a.body], np.array(a.point), index[b.body], np.array(b.point)
             return PairLoad(name, *ends, Expression.of(-f.pull), 0.0, 0.0, 0.0)
         case m.Torque() | m.Motor():
 """),
-            after("import numpy as np\n", "\nfrom heuncli.expressions.programs import Expression"),
+            after("import numpy as np\n", "\nfrom heuncli.scene.expressions.programs import Expression"),
         ),
-        "heuncli/report/labels.py": (Edit('"actuator", "spring"})', '"actuator", "spring", "counterweight"})'),),
+        "heuncli/study/quantities/labels.py": (Edit('"actuator", "spring"})', '"actuator", "spring", "counterweight"})'),),
     },
 )  # fmt: skip
 SCENE = """\

@@ -12,14 +12,14 @@ from tests.contributing.addition import Addition, Edit, after, answers, heun
 RALSTON2 = Addition(
     "A method",
     {
-        "heuncli/integration/methods/explicit.py": (
-            after("from heuncli.integration.methods.method import Method\n", """
+        "heuncli/motion/integration/methods/explicit.py": (
+            after("from heuncli.motion.integration.methods.method import Method\n", """
 RALSTON2 = Method(
     name="Ralston2", order=2, fixed=True, nodes=(0.0, 2 / 3), stages=(((0, 2 / 3),),), solution=((0, 1 / 4), (1, 3 / 4))
 )
 """),
         ),
-        "heuncli/method_rows.py": (
+        "heuncli/base/method_rows.py": (
             Edit("METHODS = (\n", """METHODS = (
     MethodRow("Ralston2", 2, "explicit", "fixed", "quaternion", "of second order the least error", "explicit.RALSTON2"),
 """),

@@ -10,7 +10,7 @@ LEVER = Addition(
     "A published case",
     {},
     {
-        "heuncli/published/specs/lever.yaml": """\
+        "heuncli/analyses/published/specs/lever.yaml": """\
 # A lever on its fulcrum, and what a balance on its end shows.
 heun: 1
 space: planar
@@ -21,7 +21,7 @@ joints:
   fulcrum: {type: ball, from: ground.F, to: bar.F}
   balance: {type: plane, from: ground.B, to: bar.B, normal: [0, 1]}
 """,
-        "heuncli/published/numbers/lever.yaml": """\
+        "heuncli/analyses/published/numbers/lever.yaml": """\
 about: a lever
 source: Archimedes, On the Equilibrium of Planes
 tables:

@@ -9,22 +9,22 @@ from tests.contributing.addition import Addition, after, heun
 BOBS = Addition(
     "A format of models",
     {
-        "heuncli/conversion/readers.py": (
+        "heuncli/scene/importers/readers.py": (
             after("READERS = (\n", '    ModelReader("bobs", "Bobs", "bobs.reader", frozenset()),\n'),
         ),
     },
     {
-        "heuncli/conversion/bobs/__init__.py": "",
-        "heuncli/conversion/bobs/reader.py": '''"""Bobs on strings, each about a hook -> a described machine."""
+        "heuncli/scene/importers/bobs/__init__.py": "",
+        "heuncli/scene/importers/bobs/reader.py": '''"""Bobs on strings, each about a hook -> a described machine."""
 
 from __future__ import annotations
 
-from heuncli.conversion.asked import ImportAsked
-from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine, DescribedPoint
-from heuncli.conversion.names import called, names_of
-from heuncli.conversion.xml_elements import XmlElement
-from heuncli.errors import Problem, SourceLocation
-from heuncli.spec.models import ZERO
+from heuncli.scene.importers.asked import ImportAsked
+from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine, DescribedPoint
+from heuncli.scene.importers.names import called, names_of
+from heuncli.scene.importers.xml_elements import XmlElement
+from heuncli.base.errors import Problem, SourceLocation
+from heuncli.scene.file_format.models import ZERO
 
 NONE = (ZERO, ZERO, ZERO)
 

@@ -12,7 +12,7 @@ from tests.contributing.addition import Addition, after, answers, heun
 CENTER_SPEED = Addition(
     "A result",
     {
-        "heuncli/results_schema.py": (
+        "heuncli/results/results_schema.py": (
             after(""" vector("center_acceleration", "m/s²")),
 """, """    *at("bodies.BODY", "of the centre of mass, without its direction", scalar("center_speed", "m/s")),
 """),

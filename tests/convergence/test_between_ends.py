@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.method_rows import METHODS
-from heuncli.results import Array
+from heuncli.base.method_rows import METHODS
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array
 from tests.shared.bars import chain, double
 from tests.shared.scenes import study
 from tests.shared.tops import heavy_top

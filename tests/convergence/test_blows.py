@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.output.snapshots import measure
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
-from heuncli.telling import measure
 from tests.oracle.blows import with_blows
 from tests.oracle.impulses import state_after, struck
 from tests.oracle.read import Placed, state_at

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import MotionTask, StoppingRules
-from heuncli.spec.load import load
+from heuncli.motion.integration.run.request import MotionTask, StoppingRules
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve

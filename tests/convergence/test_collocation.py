@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.errors import LimitError, SolveError
-from heuncli.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.results import Array, Results
+from heuncli.base import tolerances
+from heuncli.base.errors import LimitError, SolveError
+from heuncli.motion.integration.methods.collocation import GAUSS4, GAUSS6, RADAU5, RADAU9
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array, Results
 from tests.bench.stiff import STIFF_SCENES
 from tests.shared.bars import double
 from tests.shared.event_scenes import EVENTS

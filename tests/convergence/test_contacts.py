@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.bars import rods
 from tests.shared.scenes import near, solved, study

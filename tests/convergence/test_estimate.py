@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import MotionTask
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import recover

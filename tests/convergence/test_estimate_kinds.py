@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
-from heuncli.spec.load import load
+from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

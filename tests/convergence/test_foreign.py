@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import LimitError, SolveError, SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import LimitError, SolveError, SpecError
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.bars import double

@@ -8,7 +8,7 @@ import random
 import numpy as np
 import pytest
 
-from heuncli import tolerances
+from heuncli.base import tolerances
 from heuncli.study.ask.study import Study
 from tests.shared.scenes import near, study
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.bars import HEAD
 from tests.shared.scenes import near, solved, study
 

@@ -10,14 +10,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.methods.method import Method, Row
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.method_rows import METHODS
-from heuncli.records import replace
-from heuncli.results import Array
+from heuncli.base.errors import SolveError
+from heuncli.base.method_rows import METHODS
+from heuncli.base.records import replace
+from heuncli.motion.integration.methods.method import Method, Row
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.results.results import Array
 from tests.shared.bars import chain, double, rods
 from tests.shared.scenes import study
 from tests.shared.slopes import fitted

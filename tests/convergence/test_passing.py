@@ -13,14 +13,14 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.integration.check.singular_poses import singular_poses
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.integration.trajectory import Trajectory
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.motion.integration.check.singular_poses import singular_poses
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.prepare import PreparedScene
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import study
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.methods.registry import method_of
-from heuncli.method_rows import METHODS
-from heuncli.results import Array
-from heuncli.tolerances import EPS
+from heuncli.base.method_rows import METHODS
+from heuncli.base.tolerances import EPS
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.results.results import Array
 from tests.bench.long import KNOWN, Errors, errors, runner_of
 
 RUNNERS = {name: runner_of(known) for name, known in KNOWN.items()}

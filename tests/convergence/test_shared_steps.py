@@ -11,7 +11,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.integration.check import runs
+from heuncli.motion.integration.check import runs
 from tests.shared.scenes import study
 
 CASES = [(10, 10), (10, 14), (10, 20), (20, 20), (20, 28), (30, 40)]  # w [1/s], jumps a second

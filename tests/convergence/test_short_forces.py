@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.golden_a import GOLDEN_A
 from tests.shared.scenes import solved
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.method_rows import METHODS
+from heuncli.base.method_rows import METHODS
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
 
 WATCHED = [m for m in (method_of(row.name) for row in METHODS if row.kind == "explicit") if m.stable]
 

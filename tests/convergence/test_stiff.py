@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import MotionTask, StoppingRules
-from heuncli.spec.load import load
+from heuncli.motion.integration.run.request import MotionTask, StoppingRules
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import describe
 from tests.bench.stiff import FRICTION, STIFF_SCENES, WIRE
 from tests.shared.folders import SPECS

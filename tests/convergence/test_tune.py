@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 import numpy as np
 import pytest
 
-from heuncli.commands.tune.results import (
+from heuncli.analyses.tune.results import (
     Constraint,
     Goal,
     Reading,
@@ -17,9 +17,9 @@ from heuncli.commands.tune.results import (
     TuneResults,
     TuneTask,
 )
-from heuncli.commands.tune.study import Tuning
-from heuncli.commands.tune.trials import TIME_LIMIT, Trials
-from heuncli.results import Array
+from heuncli.analyses.tune.study import Tuning
+from heuncli.analyses.tune.trials import TIME_LIMIT, Trials
+from heuncli.results.results import Array
 
 Function = Callable[[Array], float]
 SLOPES = np.array([[1.0, 3.0], [-1.0, 2.0], [0.3, -2.5], [1.0, 0.0], [-1.0, 0.0]])

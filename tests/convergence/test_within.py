@@ -9,13 +9,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.integration.check.singular_poses import singular_poses
-from heuncli.integration.run import step_records
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.segments import discontinuities_of
-from heuncli.integration.trajectory import Trajectory
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.motion.integration.check.singular_poses import singular_poses
+from heuncli.motion.integration.run import step_records
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import Setup, set_up
 from tests.oracle.published import START, andrews, windows
 from tests.oracle.values import to_yaml

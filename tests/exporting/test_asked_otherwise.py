@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.decks.naming import DeckNames
-from heuncli.decks.registry import DECKS
-from heuncli.load_cases.model import LoadCases
+from heuncli.analyses.load_cases.model import LoadCases
+from heuncli.output.fe_decks.naming import DeckNames
+from heuncli.output.fe_decks.registry import DECKS
 
 SCENE: dict[str, Any] = {
     "heun": 1,

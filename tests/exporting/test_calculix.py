@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.command import Heun
 from tests.shared.scenes import near, study

@@ -13,17 +13,17 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.commands.exporting.request import FORMATS
-from heuncli.decks import nastran
-from heuncli.decks.naming import DeckNames
-from heuncli.decks.readme import exact
-from heuncli.decks.registry import DECKS
-from heuncli.load_cases.model import LoadCase, LoadCases, LoadedBody
-from heuncli.load_cases.solid_mesh import SolidMesh, read_mesh
-from heuncli.load_cases.unit_systems import asked, in_units
-from heuncli.records import replace
-from heuncli.results import Array
-from heuncli.shapes.rotations import cross
+from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
+from heuncli.analyses.load_cases.solid_mesh import SolidMesh, read_mesh
+from heuncli.analyses.load_cases.unit_systems import asked, in_units
+from heuncli.app.commands.exporting.request import FORMATS
+from heuncli.base.records import replace
+from heuncli.output.fe_decks import nastran
+from heuncli.output.fe_decks.naming import DeckNames
+from heuncli.output.fe_decks.readme import exact
+from heuncli.output.fe_decks.registry import DECKS
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import cross
 from tests.shared.load_cases import cases_of, point_masses
 from tests.shared.scenes import moving, near, study
 from tests.shared.trees import tree_scene

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.load_cases.gathered import BALANCED
-from heuncli.load_cases.model import LoadCase, LoadCases, LoadedBody
-from heuncli.load_cases.unit_systems import asked, in_units
-from heuncli.results import Array
-from heuncli.shapes.rotations import cross
-from heuncli.spec.load import load
-from heuncli.spec.source import read
+from heuncli.analyses.load_cases.gathered import BALANCED
+from heuncli.analyses.load_cases.model import LoadCase, LoadCases, LoadedBody
+from heuncli.analyses.load_cases.unit_systems import asked, in_units
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.source import read
+from heuncli.scene.shapes.rotations import cross
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import Finding, SolveError
-from heuncli.load_cases.gathered import require_balance
-from heuncli.load_cases.solid_mesh import read_mesh
-from heuncli.load_cases.unit_systems import SI, asked
-from heuncli.records import replace
+from heuncli.analyses.load_cases.gathered import require_balance
+from heuncli.analyses.load_cases.solid_mesh import read_mesh
+from heuncli.analyses.load_cases.unit_systems import SI, asked
+from heuncli.base.errors import Finding, SolveError
+from heuncli.base.records import replace
 from tests.shared.command import Heun
 from tests.shared.load_cases import cases_of
 from tests.shared.scenes import study

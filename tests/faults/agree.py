@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.results import Array, Block
-from heuncli.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
+from heuncli.results.results import Array, Block
+from heuncli.results.results_schema import ESTIMATES, KIND_OF, SPACE, TREE, Node, Quantity, below
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 

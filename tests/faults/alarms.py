@@ -23,8 +23,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from heuncli.cli import alarm, leaving
-from heuncli.cli.entry import enter
+from heuncli.app.cli import alarm
+from heuncli.app.cli.entry import enter
+from heuncli.base import signals
 from tests.shared.folders import SPECS
 
 COMMANDS = (
@@ -177,7 +178,7 @@ def _become(name: str, folder: Path, at: float | None, work: Callable[[], int]) 
                 told(what)
 
         alarm._timer = timer
-        leaving.listen()
+        signals.listen()
         code = work()
         sys.stdout.flush()
     finally:

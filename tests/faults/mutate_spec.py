@@ -9,7 +9,7 @@ from functools import cache
 from random import Random
 from typing import Any
 
-from heuncli.spec.format_couplings import COUPLINGS
+from heuncli.scene.file_format.format_couplings import COUPLINGS
 from tests.faults import sources
 from tests.faults.random_expressions import random_expression
 from tests.faults.sources import Spot, Tree

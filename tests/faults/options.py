@@ -20,12 +20,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from heuncli.cli.options import fields_of
-from heuncli.cli.registry import COMMANDS
-from heuncli.errors import HeunError
-from heuncli.joint_kinds import JOINTS
-from heuncli.spec.load import load
-from heuncli.spec.source import parse
+from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.registry import COMMANDS
+from heuncli.base.errors import HeunError
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.source import parse
 from tests.shared.all_scenes import all_scenes, link_files
 from tests.shared.command import Done
 from tests.shared.folders import ROOT

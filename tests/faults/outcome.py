@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 
 MEGABYTE = 2**20
 

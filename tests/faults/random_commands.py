@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from random import Random
 
-from heuncli.cli.options import RequestField, fields_of
-from heuncli.cli.registry import command_of
+from heuncli.app.cli.options import RequestField, fields_of
+from heuncli.app.cli.registry import command_of
 from tests.faults import sources
 from tests.faults.mutate_spec import UNITS, misspelt, vocabulary
 from tests.faults.random_expressions import random_expression

@@ -10,7 +10,7 @@ from functools import cache
 from random import Random
 from typing import Any
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.faults import sources
@@ -41,7 +41,7 @@ def results(name: str) -> dict[str, Any]:
     import tempfile
     from pathlib import Path
 
-    from heuncli.report.export import to_json
+    from heuncli.output.tables.export import to_json
 
     with tempfile.TemporaryDirectory() as folder:
         for table, content in sources.tables().items():

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.errors import SolveError
-from heuncli.mechanism.model import Mechanism
+from heuncli.base.errors import SolveError
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import Mechanism
 from tests.shared.drafted_loops import four_bar, slider_crank
 from tests.shared.drafted_mechanisms import X, Y, Z, body, in_time, joint, scene, turned
 

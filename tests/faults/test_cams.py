@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from tests.shared.cams import PERIOD, eccentric
 from tests.shared.scenes import solved
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError, SolveError, SpecError
+from heuncli.base.errors import HeunError, SolveError, SpecError
 from tests.shared.drive_sources import driven
 from tests.shared.mechanisms import BASE, ROCKER, crank_rocker
 from tests.shared.scenes import moving, solved

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from heuncli.errors import Problem, SolveError
+from heuncli.base.errors import Problem, SolveError
 from tests.bench.stiff import WIRE
 from tests.shared.bars import double
 from tests.shared.folders import SPECS

@@ -8,11 +8,11 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.announcements import listener, listening
-from heuncli.errors import HeunError, LimitError, Problem, SolveError
-from heuncli.integration.run import slow_runs
-from heuncli.integration.run.pace import FIRST_LOOK, projected_steps
-from heuncli.tolerances import MOST_STEPS
+from heuncli.base.announcements import listener, listening
+from heuncli.base.errors import HeunError, LimitError, Problem, SolveError
+from heuncli.base.tolerances import MOST_STEPS
+from heuncli.motion.integration.run import slow_runs
+from heuncli.motion.integration.run.pace import FIRST_LOOK, projected_steps
 from tests.shared.scenes import solved
 
 SCENE = """\

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from heuncli.errors import Problem, SolveError
+from heuncli.base.errors import Problem, SolveError
 from tests.shared.locking_crank import LOCKING_CRANK
 from tests.shared.scenes import solved
 

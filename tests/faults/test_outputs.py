@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 
-from heuncli.cli import entry, files
+from heuncli.app.cli import entry
+from heuncli.base import files
 from tests.shared.command import HANGING
 
 CALLS = ("open", "write", "fsync", "close", "chmod", "replace")

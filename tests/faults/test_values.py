@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from heuncli.errors import Problem, SolveError, SpecError
+from heuncli.base.errors import Problem, SolveError, SpecError
 from tests.shared.mechanisms import crank_rocker
 from tests.shared.scenes import moving, solved
 

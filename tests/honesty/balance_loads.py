@@ -19,10 +19,10 @@ from typing import Any, NamedTuple
 
 import mpmath as mp
 
-from heuncli.balancing.asked import AskedWheel, BalanceOptions
-from heuncli.balancing.results import BalanceResults
-from heuncli.balancing.study import balance
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import AskedWheel, BalanceOptions
+from heuncli.analyses.balancing.results import BalanceResults
+from heuncli.analyses.balancing.study import balance
+from heuncli.scene.file_format.load import load
 
 DIGITS = 40
 with mp.workdps(DIGITS):

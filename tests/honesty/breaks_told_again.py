@@ -20,8 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.results import Results
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Results
 from tests.honesty.rest_poses import spread
 from tests.shared.hunts import asked_of
 from tests.shared.scenes import solved

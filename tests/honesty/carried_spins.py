@@ -17,11 +17,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.errors import SolveError
-from heuncli.linearisation.modes import SceneModes
-from heuncli.oscillations.study import modes
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base.errors import SolveError
+from heuncli.motion.linearisation.modes import SceneModes
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from tests.honesty.rest_poses import spread
 from tests.oracle.values import to_yaml
 from tests.shared.hunts import asked_of

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.honesty.near_redundant import Rng, body, flat, scene_of
 from tests.shared.scenes import study

@@ -15,13 +15,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.linalg import expm
 
-from heuncli.commands.charting.motion import motion_of
-from heuncli.commands.charting.plan import ChartOptions
-from heuncli.commands.charting.results import ChartedRun
-from heuncli.commands.charting.study import chart
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.spec.load import load
+from heuncli.analyses.charting.motion import motion_of
+from heuncli.analyses.charting.plan import ChartOptions
+from heuncli.analyses.charting.results import ChartedRun
+from heuncli.analyses.charting.study import chart
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.scene.file_format.load import load
 from tests.shared.chains import DRAWN, Array, chain
 from tests.shared.hunts import asked_of
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import tolerances
+from heuncli.base import tolerances
 from heuncli.study.ask.study import Study
 from tests.shared.exact import Exact
 

@@ -23,13 +23,13 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 
-from heuncli.cli.entry import enter
-from heuncli.commands.find.page import FoundPage, to_json
-from heuncli.commands.find.results import FindCondition
-from heuncli.commands.find.study import look
-from heuncli.report.table_units import Units
-from heuncli.variants.axes import Interval
-from heuncli.variants.course import Sample
+from heuncli.analyses.find.results import FindCondition
+from heuncli.analyses.find.study import look
+from heuncli.analyses.variants.axes import Interval
+from heuncli.analyses.variants.course import Sample
+from heuncli.app.cli.entry import enter
+from heuncli.app.commands.find.page import FoundPage, to_json
+from heuncli.study.quantities.table_units import Units
 
 Rng = np.random.Generator
 EPS = 2.0**-52

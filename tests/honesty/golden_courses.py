@@ -18,12 +18,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.spec.load import load
+from heuncli.output.snapshots.changes import changes
+from heuncli.output.snapshots.keep import keep
+from heuncli.output.snapshots.kept import KeptRun
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling.changes import changes
-from heuncli.telling.keep import keep
-from heuncli.telling.kept import KeptRun
 
 DENSE = np.linspace(0.0, 1.0, 200_001)
 LEAST_WIDTH = 0.012  # of a pulse that has to be seen between fixed instants, of a run of length 1

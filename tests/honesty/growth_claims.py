@@ -16,9 +16,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from heuncli.commands.probing.results import GrowthResults
-from heuncli.commands.probing.study import probe
-from heuncli.spec.load import load
+from heuncli.analyses.probing.results import GrowthResults
+from heuncli.analyses.probing.study import probe
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.shared.hunts import asked_of
 

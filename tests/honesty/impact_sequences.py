@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from heuncli.study.ask.study import Study
 from tests.honesty.rest_poses import spread
 from tests.oracle.values import to_yaml

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
-from heuncli.shapes.rotations import from_vector
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import from_vector
 
 G = 9.81
 Place = Sequence[float] | Array

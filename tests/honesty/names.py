@@ -21,10 +21,10 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple
 
-from heuncli.errors import Finding
-from heuncli.expressions.units import parse_unit
-from heuncli.spec.names import RESERVED_FOR
-from heuncli.spec.source import parse
+from heuncli.base.errors import Finding
+from heuncli.base.units import parse_unit
+from heuncli.scene.file_format.names import RESERVED_FOR
+from heuncli.scene.file_format.source import parse
 from tests.shared.folders import SPECS
 from tests.shared.in_process import run_command
 from tests.shared.renamed import WORDS, NeutralSpec, neutral, tokens_for, with_words

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from heuncli.mechanism.build import build
-from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane.step import step
-from heuncli.spec.load import load
-from heuncli.tree.prepare import prepare
+from heuncli.multibody.mechanism.build import build
+from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.plane.step import step
+from heuncli.multibody.tree.prepare import prepare
+from heuncli.scene.file_format.load import load
 
 REACH = 4.0  # [m] about: the scene's size, twice the farthest point's distance from the mean of all, and coordinates
 

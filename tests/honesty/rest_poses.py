@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from tests.oracle.values import to_yaml
 from tests.shared.damped_flow import RTOL, NoRest, Rest, rest_of
 from tests.shared.hunts import asked_of

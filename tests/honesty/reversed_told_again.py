@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.results import Array
-from heuncli.results_schema import REPORTS, SPACE, TREE, Quantity
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Array
+from heuncli.results.results_schema import REPORTS, SPACE, TREE, Quantity
 from heuncli.study.ask.study import Study
 from tests.faults.sources import parsed
 from tests.honesty.rest_poses import spread

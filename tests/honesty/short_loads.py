@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.errors import HeunError, SolveError
+from heuncli.base.errors import HeunError, SolveError
 from tests.oracle.freedoms import MACHINES, Machine
 from tests.oracle.spans import LASTING, SHORT, Span
 from tests.oracle.switched import Chatters, Laborious, Load, Motion, Vector

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from tests.oracle.read import model, state_at
 from tests.oracle.rows import gaps
 from tests.oracle.solve import solve

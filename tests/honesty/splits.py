@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.read import state_at
 from tests.oracle.solve import solve
 from tests.oracle.tellings import TELLINGS, Telling

@@ -17,13 +17,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.commands.lagrange.instant import instant_of
-from heuncli.commands.lagrange.results import StateSpace
-from heuncli.commands.lagrange.study import LagrangeQuestion, told
-from heuncli.errors import SolveError, SpecError
-from heuncli.joint_kinds import RATES
-from heuncli.results import Array, Results
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.instant import instant_of
+from heuncli.analyses.lagrange.results import StateSpace
+from heuncli.analyses.lagrange.study import LagrangeQuestion, told
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.base.joint_kinds import RATES
+from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.hunts import asked_of
 from tests.shared.scenes import solved

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.results_schema import REPORTS, SHARES
+from heuncli.base.errors import HeunError
+from heuncli.results.results_schema import REPORTS, SHARES
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 from tests.faults.sources import parsed

@@ -10,9 +10,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
-from heuncli.spec.load import load
-from heuncli.spec.source import parse
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.source import parse
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import describe, solve
 from tests.oracle.published import four_bar, windows

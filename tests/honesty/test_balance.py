@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.kinetostatics.balance import balance_residual
-from heuncli.records import replace
+from heuncli.base import tolerances
+from heuncli.base.records import replace
+from heuncli.loads.kinetostatics.balance import balance_residual
 from tests.shared.scenes import study
 
 Array = np.ndarray[Any, np.dtype[np.float64]]

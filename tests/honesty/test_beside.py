@@ -12,9 +12,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.cli.entry import enter
-from heuncli.results import Array, Results
+from heuncli.app.cli.entry import enter
+from heuncli.base import tolerances
+from heuncli.results.results import Array, Results
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.ask.study import Study
 from tests.shared.parallelogram import parallelogram

@@ -8,7 +8,7 @@ import re
 
 import pytest
 
-from heuncli import tolerances
+from heuncli.base import tolerances
 from tests.honesty.boundaries.part import Row
 from tests.honesty.boundaries.table import EXEMPT, PARTS, ROWS, WANTED
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.integration.check.distance import Marks, bounded_motion_error, motion_error
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.request import MotionTask
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base import tolerances
+from heuncli.motion.integration.check.distance import Marks, bounded_motion_error, motion_error
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import Setup, set_up
 from tests.shared.folders import SPECS
 

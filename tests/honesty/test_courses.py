@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from heuncli.commands.find.results import CourseFindings
-from heuncli.commands.find.search import is_steep
-from heuncli.commands.find.study import look
-from heuncli.variants.conditions import Sign
-from heuncli.variants.course import MeasureCourse, Sample
+from heuncli.analyses.find.results import CourseFindings
+from heuncli.analyses.find.search import is_steep
+from heuncli.analyses.find.study import look
+from heuncli.analyses.variants.conditions import Sign
+from heuncli.analyses.variants.course import MeasureCourse, Sample
 
 Function = Callable[[float], float]
 FINE = np.linspace(0.0, 1.0, 20_001)

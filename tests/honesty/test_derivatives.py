@@ -11,8 +11,8 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.commands.sensitivity.derivative import derivative
-from heuncli.commands.sensitivity.results import NoisyDerivative, NoisyValue
+from heuncli.analyses.sensitivity.derivative import derivative
+from heuncli.analyses.sensitivity.results import NoisyDerivative, NoisyValue
 
 Function = Callable[[float], float]
 

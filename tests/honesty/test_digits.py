@@ -8,13 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.report.labels import labels_of
-from heuncli.report.page import page_of
-from heuncli.report.text_table import plain
+from heuncli.output.snapshots import measure
+from heuncli.output.tables.page import page_of
+from heuncli.output.tables.text_table import plain
 from heuncli.study.ask.expectations import compare
 from heuncli.study.ask.study import Study
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search.extremes import ColumnSearch
-from heuncli.telling import measure
 from tests.shared.folders import SPECS
 from tests.shared.scenes import near, study
 

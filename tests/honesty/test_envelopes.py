@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.optimize import minimize_scalar
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

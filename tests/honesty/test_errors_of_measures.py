@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.results_schema import REPORTS
-from heuncli.spec.load import load
+from heuncli.analyses.variants.asking import Asker, Recipe, measured
+from heuncli.output.snapshots.keep import keep
+from heuncli.results.results_schema import REPORTS
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, Peak, stated_error
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.stated import error_of, unit_of
 from heuncli.study.workflow import solve
-from heuncli.telling.keep import keep
-from heuncli.variants.asking import Asker, Recipe, measured
-from heuncli.variants.stated import error_of, unit_of
 from tests.shared.folders import ROOT, SPECS
 
 SCENES = (

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.results.results import Array
 from tests.shared.bars import rods
 from tests.shared.double_pendulum import REFERENCE
 from tests.shared.scenes import study

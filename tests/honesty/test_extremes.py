@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.report.labels import labels_of
-from heuncli.report.page import TABLE_DEFAULT, page_of
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError
+from heuncli.output.tables.page import TABLE_DEFAULT, page_of
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.bench.honesty import told

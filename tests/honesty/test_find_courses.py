@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.commands.find.study import look
-from heuncli.variants.course import Sample
+from heuncli.analyses.find.study import look
+from heuncli.analyses.variants.course import Sample
 from tests.honesty.find_courses import KINDS, judged
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.mechanism.build import build
-from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane.step import step
-from heuncli.spec.load import load
-from heuncli.tree.prepare import prepare
+from heuncli.multibody.mechanism.build import build
+from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.plane.step import step
+from heuncli.multibody.tree.prepare import prepare
+from heuncli.scene.file_format.load import load
 from tests.honesty.nearly_flat import swing
 
 

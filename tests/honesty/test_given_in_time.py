@@ -11,7 +11,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.measure import Peak, peak
 from heuncli.study.ask.study import TOO_FEW, Study
 from tests.shared.scenes import study

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.telling.changes import changes
+from heuncli.output.snapshots.changes import changes
 from tests.honesty.golden_courses import Course, Pulse, drawn, kept, look_at
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli import tolerances
+from heuncli.base import tolerances
 from tests.honesty.chaotic import SEEDS, chaotic_scene, grid, run_of
 from tests.shared.truth import KNOWN, SECOND, TRUTH, off
 

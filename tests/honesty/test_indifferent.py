@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.oscillations.study import modes
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.scene.file_format.load import load
 from tests.honesty.indifferent import PARTS, TYPED, Bench, law, spring_arm, turntable
 from tests.oracle.values import to_yaml
 from tests.shared.scenes import near, solved

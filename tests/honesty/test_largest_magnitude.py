@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.output.snapshots import measure
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling import measure
 
 HELD = """\
 heun: 1

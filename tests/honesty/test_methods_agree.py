@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.errors import SolveError, SpecError
-from heuncli.integration.check.distance import Marks
-from heuncli.integration.check.shared_blows import between_strikes
-from heuncli.integration.trajectory import Trajectory
-from heuncli.method_rows import METHODS, MethodRow
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.base.method_rows import METHODS, MethodRow
+from heuncli.motion.integration.check.distance import Marks
+from heuncli.motion.integration.check.shared_blows import between_strikes
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.bench.honesty import told
 from tests.shared.event_scenes import EVENTS

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from heuncli.report.heading import write_heading
+from heuncli.output.tables.heading import write_heading
 from tests.shared.scenes import study
 
 

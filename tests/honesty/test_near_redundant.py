@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.results import Results
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Results
 from tests.honesty.faults import faults
 from tests.honesty.near_redundant import hinged_scene, near_scene
 from tests.shared.exact import solution

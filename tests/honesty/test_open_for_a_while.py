@@ -6,13 +6,13 @@ import math
 
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.analyses.variants.asking import measured
+from heuncli.output.snapshots import measure
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import value
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.telling import measure
-from heuncli.variants.asking import measured
 
 # A block slides until a stop and a rope hold it at the same instant: from then on both together bear the force.
 HELD_TWICE = """\

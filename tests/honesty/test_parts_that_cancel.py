@@ -11,8 +11,8 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results_paths import find
-from heuncli.spec.load import load
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options

@@ -7,7 +7,7 @@ import random
 import numpy as np
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import MeasureRequest, value
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

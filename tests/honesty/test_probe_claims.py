@@ -8,9 +8,9 @@ import random
 import numpy as np
 import pytest
 
-from heuncli.commands.probing.results import DEAD_CENTRE, Probe
-from heuncli.commands.probing.study import probe
-from heuncli.spec.load import load
+from heuncli.analyses.probing.results import DEAD_CENTRE, Probe
+from heuncli.analyses.probing.study import probe
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.shared.chains import chain
 

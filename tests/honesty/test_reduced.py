@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from tests.shared.reduced import pair, same
 
 SPECS = sorted(path.name for path in Path("specs").glob("*.yaml"))

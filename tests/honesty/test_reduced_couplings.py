@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.reduction.model import Reduced
-from heuncli.spec.load import load
+from heuncli.multibody.reduction.model import Reduced
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.values import to_yaml
 from tests.shared.coupled_in_a_plane import ELEMENTS, coupled_flat

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from tests.oracle.scenes import SPREAD
 from tests.oracle.values import to_yaml
 from tests.shared.doubles import redundant_scene

@@ -10,9 +10,9 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.reduction.model import Reduced
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.multibody.reduction.model import Reduced
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import set_up
 from heuncli.study.workflow import solve

@@ -12,16 +12,16 @@ from itertools import product
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.integration.segments import discontinuities_of
-from heuncli.integration.trajectory import Trajectory
-from heuncli.method_rows import METHODS
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.base.method_rows import METHODS
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.bench.honesty import told
 from tests.bench.stiff import STIFF_SCENES
@@ -109,7 +109,7 @@ def test_polynomials_of_very_long_runs_are_let_go(monkeypatch: pytest.MonkeyPatc
     runner, end = runner_of("chaotic 0")
     asked = np.linspace(0.0, end, 301)
     kept = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
-    monkeypatch.setattr("heuncli.integration.run.step_records.MOST_COURSES", 10)
+    monkeypatch.setattr("heuncli.motion.integration.run.step_records.MOST_COURSES", 10)
     left = run_of("chaotic 0", method_of("DOP853"), asked, keeping=True)
     assert kept.courses is not None and kept.courses.spans[:, 0].any()
     assert left.courses is None

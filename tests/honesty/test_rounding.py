@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.methods.followed import FOLLOWED
+from heuncli.base.errors import SolveError
+from heuncli.motion.integration.methods.followed import FOLLOWED
 from heuncli.study.compose.warnings import unbalanced
 from tests.shared.scenes import near, solved
 

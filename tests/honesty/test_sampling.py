@@ -10,11 +10,11 @@ import pytest
 from numpy.random import Generator
 from scipy.stats import binom, norm
 
-from heuncli.results import Array
-from heuncli.variants.axes import Drawn
-from heuncli.variants.draws import draws_of
-from heuncli.variants.indices import LEAST_BOUNDED, sobol_indices
-from heuncli.variants.sampling import PERCENTS, SURE, Estimated, sampled
+from heuncli.analyses.variants.axes import Drawn
+from heuncli.analyses.variants.draws import draws_of
+from heuncli.analyses.variants.indices import LEAST_BOUNDED, sobol_indices
+from heuncli.analyses.variants.sampling import PERCENTS, SURE, Estimated, sampled
+from heuncli.results.results import Array
 
 SEEDS = 2000
 LEAST_SEEN = binom.ppf(1e-4, SEEDS, SURE) / SEEDS  # of so many true intervals fewer hold the truth once in 10,000 times

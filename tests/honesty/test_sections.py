@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.results import Results
-from heuncli.shapes import outlines
+from heuncli.base.errors import SpecError
+from heuncli.results.results import Results
+from heuncli.scene.shapes import outlines
 from tests.oracle.masses import Plane, cut
 from tests.oracle.turns import unit
 from tests.shared.bars import HEAD

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.heading import write_heading
-from heuncli.results import Results
+from heuncli.output.tables.heading import write_heading
+from heuncli.results.results import Results
 from tests.shared.scenes import solved
 
 G = 9.81

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli import tolerances
+from heuncli.base import tolerances
 from tests.honesty.chaotic import chaotic_scene, grid
 from tests.shared.scenes import study
 from tests.shared.truth import KNOWN, SECOND, TRUTH, off

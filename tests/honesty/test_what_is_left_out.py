@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.run.request import MotionTask
-from heuncli.spec.load import load
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.reduced import pair, same
 from tests.shared.scenes import study

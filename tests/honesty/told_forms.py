@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.folders import SPECS
 
 POUND = 0.45359237 * 9.80665  # N
@@ -164,7 +164,7 @@ def compare_axes(spec: str, at: str, whole: dict[str, Any], rotations: dict[str,
 
 def ends_of(spec: str) -> dict[str, dict[str, str]]:
     """The bodies at both ends of each joint."""
-    from heuncli.spec.load import load
+    from heuncli.scene.file_format.load import load
 
     joints = load(spec).joints
     return {joint.name: {"from": joint.a, "to": joint.b} for joint in joints.values()}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import SpecError
+from heuncli.base.errors import SpecError
 from tests.shared.imported import imported
 from tests.shared.scenes import near, solved
 

@@ -7,13 +7,13 @@ from itertools import pairwise
 
 import pytest
 
-from heuncli.conversion import xml_elements
-from heuncli.conversion.names import cleaned, names_of
-from heuncli.conversion.xml_elements import DEEPEST, LONGEST_VALUE
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
-from heuncli.spec.names import is_name
-from heuncli.spec.source import read
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.names import is_name
+from heuncli.scene.file_format.source import read
+from heuncli.scene.importers import xml_elements
+from heuncli.scene.importers.names import cleaned, names_of
+from heuncli.scene.importers.xml_elements import DEEPEST, LONGEST_VALUE
 from tests.shared.imported import described, imported
 
 LAUGHS = "".join(f'<!ENTITY l{k} "{f"&l{k - 1};" * 10}">' for k in range(1, 10))

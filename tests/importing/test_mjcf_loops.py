@@ -11,8 +11,8 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.conversion.spec_text import spec_text
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
+from heuncli.scene.importers.spec_text import spec_text
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.imported import described

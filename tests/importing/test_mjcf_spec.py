@@ -10,8 +10,8 @@ import sys
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.imported import described, imported
 from tests.shared.scenes import near

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from heuncli.errors import SpecError
+from heuncli.base.errors import SpecError
 from tests.shared.imported_robots import imported_robot
 from tests.shared.scenes import solved
 from tests.shared.urdf_texts import Wishes, drawn_robot

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.imported_robots import ImportedRobot, imported_robot
 from tests.shared.pinocchio_answers import Answer, Asked, Robot, holding_with_mimics

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
+from heuncli.base.errors import SpecError
 from tests.shared.imported_robots import called_before, imported_robot
 from tests.shared.scenes import near, solved
 

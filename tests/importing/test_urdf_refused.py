@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.conversion.spec_text import spec_text
-from heuncli.errors import SpecError
+from heuncli.base.errors import SpecError
+from heuncli.scene.importers.spec_text import spec_text
 from tests.shared.imported import described, imported
 
 FINE = '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared import triangles

@@ -7,10 +7,10 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.joint_kinds import JOINTS
-from heuncli.kinetostatics.actions import joint_actions
-from heuncli.kinetostatics.foundation import inertia_loads
-from heuncli.mechanism.model import GROUND
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.loads.kinetostatics.actions import joint_actions
+from heuncli.loads.kinetostatics.foundation import inertia_loads
+from heuncli.multibody.mechanism.model import GROUND
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.solve.history import resample
 from tests.oracle.turns import Array, cross

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.mechanism.model import GROUND, Assembly, Mechanism
-from heuncli.records import replace
-from heuncli.shapes.rotations import from_vector, to_vector
+from heuncli.base.records import replace
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import GROUND, Assembly, Mechanism
+from heuncli.scene.shapes.rotations import from_vector, to_vector
 from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafted_mechanisms import (

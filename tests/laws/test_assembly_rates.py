@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.errors import SolveError
-from heuncli.mechanism.model import Assembly, Mechanism
-from heuncli.records import replace
+from heuncli.base.errors import SolveError
+from heuncli.base.records import replace
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from tests.shared.drafted_loops import four_bar, random_loop, slider_crank
 from tests.shared.drafted_mechanisms import (
     X,

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.errors import SolveError
-from heuncli.mechanism.model import GROUND, Directed, Mechanism
-from heuncli.records import replace
-from heuncli.shapes.rotations import from_vector, to_vector
+from heuncli.base.errors import SolveError
+from heuncli.base.records import replace
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import GROUND, Directed, Mechanism
+from heuncli.scene.shapes.rotations import from_vector, to_vector
 from tests.shared.assemblies import calls, same_motion
 from tests.shared.drafted_mechanisms import (
     X,

@@ -14,10 +14,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.tolerances import EPS
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tolerances import EPS
 from tests.shared.bars import double
 from tests.shared.folders import KERNEL as FOLDER
 from tests.shared.scenes import near

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.spec.load import load
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.shared.scenes import solved

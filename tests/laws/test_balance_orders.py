@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.oracle.turns import random_rotation
 from tests.shared.cycling import Cylinder, amplitude, balance_of, engine, four_bar
 from tests.shared.scenes import moving, solved

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.balancing.asked import AskedWeight
-from heuncli.balancing.results import BalanceResults, PlacedWeight
-from heuncli.errors import SolveError
-from heuncli.records import replace
+from heuncli.analyses.balancing.asked import AskedWeight
+from heuncli.analyses.balancing.results import BalanceResults, PlacedWeight
+from heuncli.base.errors import SolveError
+from heuncli.base.records import replace
 from tests.shared.cycling import balance_of, four_bar
 
 SEEDS = range(3)

@@ -7,8 +7,8 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.report.export import to_json
-from heuncli.results import Results
+from heuncli.output.tables.export import to_json
+from heuncli.results.results import Results
 from tests.oracle.loads import pushes
 from tests.oracle.read import GROUND, state_at
 from tests.oracle.turns import Array, cross

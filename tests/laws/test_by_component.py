@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.shapes.by_component import (
+from heuncli.results.results import Array
+from heuncli.scene.shapes.by_component import (
     body_by_body,
     cross,
     form,

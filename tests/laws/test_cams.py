@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.coupled_start.freedoms import Freedoms
-from heuncli.response import slope, tangent
+from heuncli.multibody.coupled_start.freedoms import Freedoms
+from heuncli.multibody.response import slope, tangent
 from tests.oracle.tellings import TELLINGS
 from tests.shared.cam_scenes import cam_scene
 from tests.shared.cams import carried_cam

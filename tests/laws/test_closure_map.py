@@ -9,14 +9,14 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.integration.evaluator import Recovered
 from heuncli.kernel.choose import scene as kernel
-from heuncli.response import carried, columns, jacobian
-from heuncli.shapes.rotations import from_vector
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.response import carried, columns, jacobian
+from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.tables import vectors
+from heuncli.scene.shapes.rotations import from_vector
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import resample
-from heuncli.tree.layout import Layout
-from heuncli.tree.tables import vectors
 from tests.oracle.turns import Array, cross
 from tests.shared import doubles
 from tests.shared.loops import loop

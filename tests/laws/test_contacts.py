@@ -8,16 +8,16 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.contacts.complementarity import complementary
-from heuncli.integration.contacts.restitution import MOST_ROUNDS, Struck, strikes
-from heuncli.integration.contacts.sequential_impacts import EndlessImpacts
-from heuncli.integration.contacts.touching import Touching
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.trajectory import Trajectory
-from heuncli.results import Array
-from heuncli.spec.load import load
-from heuncli.spec.models import ImpactModel
+from heuncli.base.errors import SolveError
+from heuncli.motion.integration.contacts.complementarity import complementary
+from heuncli.motion.integration.contacts.restitution import MOST_ROUNDS, Struck, strikes
+from heuncli.motion.integration.contacts.sequential_impacts import EndlessImpacts
+from heuncli.motion.integration.contacts.touching import Touching
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import ImpactModel
 from heuncli.study.model.setup import set_up
 from tests.shared.scenes import solved
 

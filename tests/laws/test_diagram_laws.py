@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.pictures.bars import WholeBar
-from heuncli.results import Array
-from heuncli.shapes.rotations import about
+from heuncli.output.figures.bars import WholeBar
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import about
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import drawn, panels_of
 from tests.shared.drawn_panels import edges, heights

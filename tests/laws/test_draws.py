@@ -9,9 +9,9 @@ import pytest
 from scipy import stats
 from scipy.stats import qmc
 
-from heuncli.variants.axes import AxisError, Drawn, ParameterAxis
-from heuncli.variants.draws import draws_of, unbalanced
-from heuncli.variants.plans import plan_of
+from heuncli.analyses.variants.axes import AxisError, Drawn, ParameterAxis
+from heuncli.analyses.variants.draws import draws_of, unbalanced
+from heuncli.analyses.variants.plans import plan_of
 
 SEEDS = [0, 1, 2024]
 

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Array, Results
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Array, Results
 from heuncli.study.ask.study import Study
 from tests.faults import laws, sources
 from tests.oracle.loads import pushes

@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.shapes.inertia import second_moment, tensor
+from heuncli.results.results import Array
+from heuncli.scene.shapes.inertia import second_moment, tensor
 from tests.shared.clouds import (
     Body,
     Cloud,

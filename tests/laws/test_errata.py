@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.shared.clouds import (
     Cloud,
     body_of,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.doubles import SEEDS, redundant_scene
 from tests.shared.scenes import near, solved
 

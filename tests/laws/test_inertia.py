@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.results import Array
-from heuncli.shapes.inertia import properties, pseudo_inertia
-from heuncli.spec.load import load
-from heuncli.spec.turns import principal
+from heuncli.base.errors import SpecError
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.turns import principal
+from heuncli.scene.shapes.inertia import properties, pseudo_inertia
 from tests.shared.solids import carried, rotation
 
 

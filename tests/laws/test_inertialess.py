@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from heuncli.study.ask.study import Study
 from tests.oracle.read import Placed
 from tests.oracle.scenes import random_scene

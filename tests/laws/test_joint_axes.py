@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.report.labels import labels_of
-from heuncli.results import Array, Block, Results
-from heuncli.spec.load import load
+from heuncli.app.cli.entry import enter
+from heuncli.results.results import Array, Block, Results
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 

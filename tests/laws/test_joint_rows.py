@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.conditions import JointCondition, conditions_of
-from heuncli.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
-from heuncli.shapes.rotations import from_vector
+from heuncli.multibody.assembly.conditions import JointCondition, conditions_of
+from heuncli.multibody.assembly.rows import Rows, acceleration_rows, missing, pose_rows, rate_rows
+from heuncli.scene.shapes.rotations import from_vector
 from tests.shared.drafted_mechanisms import body, in_time, joint, scene
 
 KINDS = ("ball", "pin", "universal", "cv", "weld", "slide", "cylinder", "line", "plane", "rod")

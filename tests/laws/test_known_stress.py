@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.run.runner import ready
-from heuncli.kinetostatics.bodies import body_states
-from heuncli.mechanism.build import build, forms_of
-from heuncli.redundancy.count import counted, counted_without_loads
-from heuncli.redundancy.self_stress import self_stress
-from heuncli.spec.load import load
-from heuncli.tree.frame import without_loads
-from heuncli.tree.prepare import prepare
+from heuncli.loads.kinetostatics.bodies import body_states
+from heuncli.loads.redundancy.count import counted, counted_without_loads
+from heuncli.loads.redundancy.self_stress import self_stress
+from heuncli.motion.integration.run.runner import ready
+from heuncli.multibody.mechanism.build import build, forms_of
+from heuncli.multibody.tree.frame import without_loads
+from heuncli.multibody.tree.prepare import prepare
+from heuncli.scene.file_format.load import load
 from tests.shared.bits import bits
 from tests.shared.folders import SPECS
 

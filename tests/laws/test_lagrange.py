@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange.coordinates import candidates, chosen, picked
-from heuncli.commands.lagrange.equations import VelocityTerms, partials_of
-from heuncli.commands.lagrange.instant import Instant, instant_of
-from heuncli.commands.lagrange.results import LagrangeResults
-from heuncli.commands.lagrange.study import LagrangeQuestion
-from heuncli.commands.lagrange.study import told as told_at
-from heuncli.integration.evaluator import CAUSES
-from heuncli.linearisation.displacements import displaced
-from heuncli.linearisation.linearise import linearised
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.coordinates import candidates, chosen, picked
+from heuncli.analyses.lagrange.equations import VelocityTerms, partials_of
+from heuncli.analyses.lagrange.instant import Instant, instant_of
+from heuncli.analyses.lagrange.results import LagrangeResults
+from heuncli.analyses.lagrange.study import LagrangeQuestion
+from heuncli.analyses.lagrange.study import told as told_at
+from heuncli.motion.integration.evaluator import CAUSES
+from heuncli.motion.linearisation.displacements import displaced
+from heuncli.motion.linearisation.linearise import linearised
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.loops import loop_scene
 from tests.shared.scenes import solved

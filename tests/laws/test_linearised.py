@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.run.runner import Runner
-from heuncli.linearisation.displacements import displaced
-from heuncli.linearisation.linearise import Linearised, linearised
-from heuncli.results import Array
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.linearisation.displacements import displaced
+from heuncli.motion.linearisation.linearise import Linearised, linearised
+from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.results.results import Array
 from heuncli.study.solve.singular_start import rates_of
-from heuncli.tree.layout import places_of_rates
 from tests.shared.loops import loop
 from tests.shared.rolling_scenes import rolling
 from tests.shared.scenes import study

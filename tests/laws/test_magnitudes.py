@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.scenes import solved
 
 # a spring, a stop that is struck twice, a closed loop or a drive, a cut; l: the metre, m: the kilogram, t: the second

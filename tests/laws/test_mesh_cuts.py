@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Array
-from heuncli.shapes.forms import Form, form
-from heuncli.spec.models import Matrix, Shape, Vec
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Matrix, Shape, Vec
+from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.shapes.forms import Form, form
 from tests.shared import polyhedra
 from tests.shared import triangles as t
 from tests.shared.solids import beyond, carried, difference, rotation, unit, vec

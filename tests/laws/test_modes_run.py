@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.run.request import MotionTask
-from heuncli.linearisation.displacements import displaced
-from heuncli.linearisation.oscillations import Mode, oscillations
-from heuncli.linearisation.reduced_equations import idle_spins
-from heuncli.linearisation.steady_motion import Looked, carried_on
-from heuncli.oscillations.study import require_no_time, state_of
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import require_no_time, state_of
+from heuncli.base.errors import SolveError
+from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.linearisation.displacements import displaced
+from heuncli.motion.linearisation.oscillations import Mode, oscillations
+from heuncli.motion.linearisation.reduced_equations import idle_spins
+from heuncli.motion.linearisation.steady_motion import Looked, carried_on
+from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.layout import places_of_rates
 from tests.oracle.values import to_yaml
 from tests.shared.folders import ROOT
 from tests.shared.governors import porter, spindle

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.shapes.rotations import hat
+from heuncli.scene.shapes.rotations import hat
 from tests.oracle.masses import mass_of
 from tests.shared.scenes import solved
 from tests.shared.trees import ABOUT, SOME, tree

@@ -9,14 +9,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.integrated_scene import IntegratedScene
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.records import replace
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.records import replace
+from heuncli.motion.integration.integrated_scene import IntegratedScene
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.layout import Layout
 
 TURN = 2.0 * np.pi
 SPECS = ("four_bar", "struck_door", "bouncing_ball", "friction", "lift", "punch")

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.mechanism.model import Assembly
-from heuncli.records import replace
+from heuncli.base.records import replace
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import Assembly
 from tests.shared.drafted_mechanisms import body, in_time, joint, largest_gap, scene
 from tests.shared.misdrawn_loops import MODES, drawn, known
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.spec.load import load
-from heuncli.spec.sharing import same
-from heuncli.spec.source import read
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.sharing import same
+from heuncli.scene.file_format.source import read
 from heuncli.study.ask.measure import peak, searched
 from heuncli.study.compose.recovery import recover
 from heuncli.study.model.options import Options

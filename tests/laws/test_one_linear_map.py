@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import GROUND
-from heuncli.response import Columns, blows, columns
-from heuncli.results import Array
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.response import Columns, blows, columns
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.loops import loop
 from tests.shared.scenes import near

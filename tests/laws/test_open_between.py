@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.report.labels import labels_of
-from heuncli.report.page import page_of
-from heuncli.results import Array
-from heuncli.results_schema import REPORTS
-from heuncli.spec.load import load
+from heuncli.output.tables.page import page_of
+from heuncli.results.results import Array
+from heuncli.results.results_schema import REPORTS
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.search.open_between import OpenBetween, verdicts

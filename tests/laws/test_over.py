@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange import course_page
-from heuncli.commands.lagrange.options import range_of
-from heuncli.commands.lagrange.over import over
-from heuncli.report.table_units import Units
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.over import over
+from heuncli.app.commands.lagrange import course_page
+from heuncli.app.commands.lagrange.options import range_of
+from heuncli.scene.file_format.load import load
+from heuncli.study.quantities.table_units import Units
 from tests.shared.folders import ROOT
 from tests.shared.lagrange import told
 

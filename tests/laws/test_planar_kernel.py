@@ -10,17 +10,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner
-from heuncli.records import replace
-from heuncli.response import Columns, Jacobian, blows, carried, columns, jacobian
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.records import replace
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.multibody.response import Columns, Jacobian, blows, carried, columns, jacobian
+from heuncli.multibody.tree.flat import moves_in_plane
+from heuncli.multibody.tree.prepare import prepare
+from heuncli.multibody.tree.tables import Table
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import draw, set_up
-from heuncli.tree.flat import moves_in_plane
-from heuncli.tree.prepare import prepare
-from heuncli.tree.tables import Table
 from tests.shared.planar_scenes import flat_scene
 from tests.shared.scenes import near
 

@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.evaluator import Evaluator
-from heuncli.integration.run.runner import ready
-from heuncli.reduction.model import Reduction
-from heuncli.reduction.plane import step as plane
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.motion.integration.evaluator import Evaluator
+from heuncli.motion.integration.run.runner import ready
+from heuncli.multibody.reduction.model import Reduction
+from heuncli.multibody.reduction.plane import step as plane
+from heuncli.multibody.tree.prepare import PreparedScene, prepare
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import draw
-from heuncli.tree.prepare import PreparedScene, prepare
 from tests.oracle.values import to_yaml
 from tests.shared.flat_in_any_plane import PLANES, flat
 

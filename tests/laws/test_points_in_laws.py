@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.response import tangent, workspace_of
-from heuncli.results import Array, Results
+from heuncli.multibody.response import tangent, workspace_of
+from heuncli.results.results import Array, Results
 from tests.shared import reducible
 from tests.shared.dual_tangent import dual_tangent
 from tests.shared.flat_in_any_plane import PLANES, flat

@@ -13,16 +13,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.integrated_scene import smaller
-from heuncli.integration.run.request import MotionTask
-from heuncli.integration.run.runner import Runner, ready
-from heuncli.reduction import immobile_bodies, spins, welded_bodies
-from heuncli.reduction.model import Reduced, Reduction
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.integrated_scene import smaller
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.motion.integration.run.runner import Runner, ready
+from heuncli.multibody.reduction import immobile_bodies, spins, welded_bodies
+from heuncli.multibody.reduction.model import Reduced, Reduction
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.layout import Layout
 from tests.oracle.read import start_state
 from tests.oracle.scenes import ALL_KINDS, LOADS, Maker
 from tests.oracle.solve import solve as solved_by_oracle

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.turns import random_rotation
 from tests.shared.rolling_scenes import rolling_scene
 from tests.shared.scenes import moving, near, solved

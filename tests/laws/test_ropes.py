@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.response import tangent, workspace_of
-from heuncli.results import Array, Results
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.multibody.response import tangent, workspace_of
+from heuncli.results.results import Array, Results
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.dual_tangent import dual_tangent
 from tests.shared.scenes import solved

@@ -7,11 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from heuncli.errors import SolveError
-from heuncli.response import tangent, workspace_of
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.tree.layout import Layout
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.layout import Layout
 from tests.oracle.tellings import TELLINGS
 from tests.oracle.values import to_yaml
 from tests.shared.dual_tangent import dual_tangent

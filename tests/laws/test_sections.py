@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.report.labels import labels_of
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
+from heuncli.study.quantities.labels import labels_of
 from tests.oracle.masses import Plane, cut, moved
 from tests.oracle.turns import Array, random_rotation, random_unit, unit
 from tests.shared.bars import HEAD

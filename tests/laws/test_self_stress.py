@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.published import beam, bricard, four_bar
 from tests.oracle.read import GROUND, model
 from tests.oracle.turns import Array

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.results import Array
-from heuncli.shapes import forms, quadrature
-from heuncli.shapes.forms import form
-from heuncli.spec.models import Shape
+from heuncli.base import tolerances
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.shapes import forms, quadrature
+from heuncli.scene.shapes.forms import form
 from tests.oracle.masses import Plane, cloud
 from tests.shared import polyhedra
 from tests.shared.solids import (

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.read import state_at
 from tests.oracle.turns import Array
 from tests.oracle.values import Harmonic

@@ -7,15 +7,15 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.lagrange.coordinates import accelerations, chosen
-from heuncli.commands.lagrange.instant import Instant, instant_of
-from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange, told
-from heuncli.errors import SolveError
-from heuncli.kinetostatics.bodies import body_states
-from heuncli.linearisation.displacements import displaced
-from heuncli.linearisation.linearise import linearised
-from heuncli.spec.load import load
-from heuncli.tree.layout import places_of_rates
+from heuncli.analyses.lagrange.coordinates import accelerations, chosen
+from heuncli.analyses.lagrange.instant import Instant, instant_of
+from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange, told
+from heuncli.base.errors import SolveError
+from heuncli.loads.kinetostatics.bodies import body_states
+from heuncli.motion.linearisation.displacements import displaced
+from heuncli.motion.linearisation.linearise import linearised
+from heuncli.multibody.tree.layout import places_of_rates
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.loops import loop_scene
 from tests.shared.trees import tree_scene

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.response import tangent
-from heuncli.results import Array
+from heuncli.multibody.response import tangent
+from heuncli.results.results import Array
 from tests.shared.scenes import study
 
 DIGITS = 1e-14  # rounding

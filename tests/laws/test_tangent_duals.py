@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.response import tangent, workspace_of
-from heuncli.spec.load import load
+from heuncli.multibody.response import tangent, workspace_of
+from heuncli.multibody.tree.layout import Layout
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
-from heuncli.tree.layout import Layout
 from tests.oracle.values import to_yaml
 from tests.shared.coupled_scenes import coupled_scene
 from tests.shared.dual_tangent import dual_tangent

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.oracle.masses import mass_of
 from tests.oracle.read import directed
 from tests.oracle.transforms import entry

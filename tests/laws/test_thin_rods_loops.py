@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.shared.parallelogram import parallelogram
 from tests.shared.scenes import near, solved, study
 

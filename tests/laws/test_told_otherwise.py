@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from heuncli.study.ask.study import Study
 from tests.oracle.read import state_at
 from tests.oracle.solve import solve

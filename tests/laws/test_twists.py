@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.commands.probing.numerics.twists import closure_rows, mass_matrix, twists
-from heuncli.integration.evaluator import Recovered
-from heuncli.linearisation.linearise import linearised
-from heuncli.response import jacobian
-from heuncli.rest.coordinates import coordinates_of
-from heuncli.spec.load import load
+from heuncli.analyses.probing.numerics.twists import closure_rows, mass_matrix, twists
+from heuncli.loads.equilibrium.coordinates import coordinates_of
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.linearisation.linearise import linearised
+from heuncli.multibody.response import jacobian
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import Setup, set_up
 from tests.shared.folders import SPECS
 

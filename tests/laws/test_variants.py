@@ -10,13 +10,13 @@ from typing import Any
 
 import pytest
 
-from heuncli.errors import HeunError, SpecError
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.analyses.variants.prepared import Variants
+from heuncli.base.errors import HeunError, SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
-from heuncli.variants.prepared import Variants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
 

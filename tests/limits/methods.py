@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.oracle.loads import gathered, pushes
 from tests.oracle.read import model, start_state
 from tests.oracle.rows import assemble

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Array
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Array
 from tests.limits.methods import rk4, stepped
 from tests.oracle.turns import about
 from tests.shared.scenes import near, solved

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.oracle.turns import about
 from tests.shared.scenes import near, solved
 

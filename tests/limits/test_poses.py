@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Array
-from heuncli.tolerances import EPS
+from heuncli.base.errors import SolveError
+from heuncli.base.tolerances import EPS
+from heuncli.results.results import Array
 from tests.limits.methods import Equations, rk4
 from tests.limits.windows import accelerated, normal_equations, upright
 from tests.oracle.published import windows

@@ -7,8 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Array
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Array
 from tests.limits.methods import rk4, stepped
 from tests.shared.bars import rods
 from tests.shared.published import course, spec_at

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 GRAVITY = 9.81
 

@@ -6,8 +6,8 @@ import textwrap
 from collections.abc import Iterator
 from pathlib import Path
 
-from heuncli.errors import HeunError, Problem
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError, Problem
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.broken import FILES, body, cures, head, is_in_words
 from tests.shared.folders import ROOT

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple, get_args
 
-from heuncli.expressions import units as u
-from heuncli.spec import fields
-from heuncli.spec import format as f
-from heuncli.spec.chapters import CHAPTERS, INLINE, TOP
-from heuncli.spec.entries import Entry, Field, fields_of
+from heuncli.base import units as u
+from heuncli.scene.file_format import fields
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.chapters import CHAPTERS, INLINE, TOP
+from heuncli.scene.file_format.entries import Entry, Field, fields_of
 from tests.shared.manual import headings
 
 ALL = "all"  # in place of the types that have a key, where all have it
@@ -70,7 +70,7 @@ SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
 
 
 def unit_of_value(name: str, value: fields.ReadValue) -> str | None:
-    """The unit of a kind of values of spec/fields.py, as the manual writes it; None: one that other keys decide."""
+    """The unit of a kind of values of scene/file_format/fields.py, as the manual writes it; None: one that other keys decide."""
     if value.dimension is None or isinstance(value, fields.Component):
         return None
     unit = u.si_unit(value.dimension)

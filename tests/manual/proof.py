@@ -5,9 +5,9 @@ The cases are solved where the tables are asked for, not where this is imported.
 
 from __future__ import annotations
 
-from heuncli.commands.check.references_told import digits_of, farthest, kinds_of
-from heuncli.published.cases import case_of
-from heuncli.published.files import names
+from heuncli.analyses.published.cases import case_of
+from heuncli.analyses.published.files import names
+from heuncli.app.commands.check.references_told import digits_of, farthest, kinds_of
 from tests.manual.tables import Table
 from tests.shared.manual import README
 from tests.shared.published import compared_case

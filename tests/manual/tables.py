@@ -12,17 +12,17 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import NamedTuple
 
-from heuncli.cli.options import fields_of
-from heuncli.cli.registry import COMMANDS, Command
-from heuncli.commands.explain.command import PAGES, summary
-from heuncli.expressions import units as u
-from heuncli.expressions.grammar import ARITY, CONSTANTS
-from heuncli.joint_kinds import SYNONYMS, TYPES, Kind
-from heuncli.method_rows import METHODS
-from heuncli.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
-from heuncli.spec import format as f
-from heuncli.spec import format_shapes as fs
-from heuncli.spec.words import FORCE_WORDS, SHAPE_WORDS
+from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.registry import COMMANDS, Command
+from heuncli.app.commands.explain.command import PAGES, summary
+from heuncli.base import units as u
+from heuncli.base.joint_kinds import SYNONYMS, TYPES, Kind
+from heuncli.base.method_rows import METHODS
+from heuncli.results.results_schema import NOT_YET, ROWS, SPACE, Quantity, is_share
+from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.words import FORCE_WORDS, SHAPE_WORDS
 from tests.manual import codes
 from tests.manual.keys import PLACES
 from tests.shared.cited_texts import equations

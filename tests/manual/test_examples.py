@@ -12,8 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.spec.source import read
+from heuncli.app.cli.entry import enter
+from heuncli.scene.file_format.source import read
 from tests.shared.manual import README, ROOT, TEXTS, blocks
 
 

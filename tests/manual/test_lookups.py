@@ -6,7 +6,7 @@ import re
 
 import pytest
 
-from heuncli.commands.explain.command import PAGES, indexed
+from heuncli.app.commands.explain.command import PAGES, indexed
 from tests.shared.manual import TEXTS, below
 
 QUESTIONS = [

@@ -7,14 +7,14 @@ import signal
 
 import pytest
 
-from heuncli.cli.entry import INTERRUPTED, OF_SEVERAL
-from heuncli.cli.files import ReaderGone
-from heuncli.cli.registry import COMMANDS
-from heuncli.commands.explain.command import PAGES
-from heuncli.expressions.grammar import ARITY, CONSTANTS
-from heuncli.expressions.units import UNITS
-from heuncli.spec import format as document
-from heuncli.spec.entries import Entry, keys_of
+from heuncli.app.cli.entry import INTERRUPTED, OF_SEVERAL
+from heuncli.app.cli.registry import COMMANDS
+from heuncli.app.commands.explain.command import PAGES
+from heuncli.base.files import ReaderGone
+from heuncli.base.units import UNITS
+from heuncli.scene.expressions.grammar import ARITY, CONSTANTS
+from heuncli.scene.file_format import format as document
+from heuncli.scene.file_format.entries import Entry, keys_of
 from tests.shared.manual import FENCED, README, ROOT, TEXTS, anchor, file_of, headings, tables_below
 
 LINK = re.compile(r"\]\(([^()\s]+)\)")

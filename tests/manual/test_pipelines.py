@@ -14,7 +14,7 @@ from typing import Any
 import pytest
 import yaml
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.manual import README, ROOT, blocks
 
 pytestmark = pytest.mark.heavy  # whole runs of whole specs, by the command

@@ -8,19 +8,19 @@ from typing import Any
 
 import pytest
 
-from heuncli import tolerances
-from heuncli.expressions.grammar import LONGEST as LONGEST_EXPRESSION
-from heuncli.kinetostatics.stress import UNKNOWN_SHEAR
-from heuncli.report.export import MOST_NUMBERS
-from heuncli.spec import format as f
-from heuncli.spec.entries import NEEDED as NO_DEFAULT
-from heuncli.spec.entries import Entry, Field
-from heuncli.spec.named_files import LARGEST as LARGEST_TABLE
-from heuncli.spec.resolve import DEFAULT_TOLERANCE
-from heuncli.spec.rules.analysis import LONGEST as LONGEST_RUN
-from heuncli.spec.rules.sections import MOST_CUTS
-from heuncli.spec.semantics import DEFAULT_SAMPLES, MOST_SAMPLES
-from heuncli.spec.source import LARGEST as LARGEST_SPEC
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.stress import UNKNOWN_SHEAR
+from heuncli.output.tables.export import MOST_NUMBERS
+from heuncli.scene.expressions.grammar import LONGEST as LONGEST_EXPRESSION
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.entries import NEEDED as NO_DEFAULT
+from heuncli.scene.file_format.entries import Entry, Field
+from heuncli.scene.file_format.named_files import LARGEST as LARGEST_TABLE
+from heuncli.scene.file_format.resolve import DEFAULT_TOLERANCE
+from heuncli.scene.file_format.rules.analysis import LONGEST as LONGEST_RUN
+from heuncli.scene.file_format.rules.sections import MOST_CUTS
+from heuncli.scene.file_format.semantics import DEFAULT_SAMPLES, MOST_SAMPLES
+from heuncli.scene.file_format.source import LARGEST as LARGEST_SPEC
 from tests.manual.keys import ALL, CHAPTERS, INLINE, NEEDED, TOP, named_fields, pairs, top_keys, unit_of, words_of
 from tests.manual.tables import TABLES, Table
 from tests.shared.manual import TEXTS, tables_below

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
+from heuncli.base.errors import SolveError
 from tests.oracle.loads import elastic, pushes, strain
 from tests.oracle.masses import Plane, cut
 from tests.oracle.scenes import ELASTIC, random_scene

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline
 
-from heuncli.mechanism.model import Joint
+from heuncli.multibody.mechanism.model import Joint
 from tests.oracle.curves import seen
 from tests.oracle.read import GROUND, Placed, placed
 from tests.oracle.rows import assemble, velocities

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.impulses import state_after, struck
 from tests.oracle.read import Placed, model, state_at
 from tests.oracle.rows import coordinates

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.bodies import body_states
-from heuncli.linearisation.displacements import displaced
-from heuncli.linearisation.steady_motion import Looked
-from heuncli.oscillations.study import state_of
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import state_of
+from heuncli.loads.kinetostatics.bodies import body_states
+from heuncli.motion.linearisation.displacements import displaced
+from heuncli.motion.linearisation.steady_motion import Looked
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.oracle.read import Placed, model
 from tests.oracle.solve import solve

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.results import Results
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Results
 from tests.oracle.checks import size_of
 from tests.oracle.read import Model, State, model, placed
 from tests.oracle.solve import Solution, solve

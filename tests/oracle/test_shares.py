@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.causes import solve_by_cause
 from tests.oracle.masses import Plane, cut
 from tests.oracle.read import State, model, state_at

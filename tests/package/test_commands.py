@@ -1,4 +1,4 @@
-"""Every command is a folder in heuncli/commands and a row in cli/registry.py, and loads nothing of another.
+"""Every command is a folder in heuncli/app/commands and a row in app/cli/registry.py, and loads nothing of another.
 
 The contracts of import-linter hold that where imports are written down; here it is seen in fresh processes.
 """
@@ -14,8 +14,8 @@ from pathlib import Path
 import pytest
 
 import heuncli
-from heuncli.cli.options import fields_of
-from heuncli.cli.registry import COMMANDS, Command
+from heuncli.app.cli.options import fields_of
+from heuncli.app.cli.registry import COMMANDS, Command
 
 PACKAGE = Path(heuncli.__file__).parent
 LINES = {  # of others: the spec
@@ -35,9 +35,9 @@ analysis: {duration: 0.1, samples: 3}
 """
 LOADED = """\
 import sys
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 enter(sys.argv[1:])
-print(*(name for name in sys.modules if name.startswith("heuncli.commands.")), file=sys.stderr)
+print(*(name for name in sys.modules if name.startswith("heuncli.app.commands.")), file=sys.stderr)
 """
 
 
@@ -68,7 +68,7 @@ def folders_of(modules: set[str]) -> Iterator[str]:
 def test_a_command_loads_nothing_of_another(command: Command) -> None:
     found = loaded(command.name, *LINES.get(command.name, ("-",)))
     folder = command.folder or command.name
-    assert f"heuncli.commands.{folder}.command" in found
+    assert f"heuncli.app.commands.{folder}.command" in found
     assert {*folders_of(found)} == {folder}
 
 

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import pytest
 
-from heuncli.cli.registry import command_of
-from heuncli.commands.lagrange.forms import ALWAYS, KEYS
-from heuncli.results_schema import quantity
+from heuncli.app.cli.registry import command_of
+from heuncli.app.commands.lagrange.forms import ALWAYS, KEYS
+from heuncli.results.results_schema import quantity
 from tests.shared.cited_texts import PACKAGE, TESTS, equations, scopes, texts, tree
 from tests.shared.folders import ROOT
 

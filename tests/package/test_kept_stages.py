@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.kept_stages import FirstStages, LaterStages
-from heuncli.records import record, replace
-from heuncli.results import Array
-from heuncli.stages import Stages
+from heuncli.base.records import record, replace
+from heuncli.multibody.kept_stages import FirstStages, LaterStages
+from heuncli.multibody.stages import Stages
+from heuncli.results.results import Array
 
 
 @record

@@ -11,7 +11,7 @@ import pytest
 from heuncli.kernel import headers, one_module
 from heuncli.kernel.choose import scene, structs
 from heuncli.kernel.modules import DECLARED, MODULES
-from heuncli.tree import tables as records
+from heuncli.multibody.tree import tables as records
 from tests.shared.folders import KERNEL as FOLDER
 
 FOR_C = {"int": "int", "float": "double"}

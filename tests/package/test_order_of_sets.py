@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 
-from heuncli.nearest import did_you_mean, listed
+from heuncli.base.nearest import did_you_mean, listed
 from tests.shared.folders import ROOT
 
 

@@ -13,8 +13,8 @@ from typing import NamedTuple as NamedTupleOfPython
 import pytest
 
 import heuncli
-from heuncli.named_tuples import NamedTuple
-from heuncli.records import fields, record, replace
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import fields, record, replace
 
 
 @record

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from heuncli.kernel.choose import scene as kernel
-from heuncli.tree import rows
-from heuncli.tree.tables import type_of
+from heuncli.multibody.tree import rows
+from heuncli.multibody.tree.tables import type_of
 
 ROWS = {
     "Body": [rows.BodyRow],

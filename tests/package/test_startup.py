@@ -46,16 +46,20 @@ joints:
 analysis: {duration: 0.1, samples: 3}
 """
 # Of the package: only scenes with shapes or sections, with closed chains, with tables; only other commands and options.
-SHAPED = {"heuncli.shapes.forms", "heuncli.kinetostatics.cuts", "heuncli.kinetostatics.sections"}
-REDUNDANT = {"heuncli.redundancy.resolve", "heuncli.redundancy.self_stress", "heuncli.redundancy.neighbours"}
+SHAPED = {"heuncli.scene.shapes.forms", "heuncli.loads.kinetostatics.cuts", "heuncli.loads.kinetostatics.sections"}
+REDUNDANT = {
+    "heuncli.loads.redundancy.resolve",
+    "heuncli.loads.redundancy.self_stress",
+    "heuncli.loads.redundancy.neighbours",
+}
 RARE = {
-    "heuncli.spec.tables",
-    "heuncli.redundancy.advice",
-    "heuncli.telling.measure",
+    "heuncli.scene.file_format.tables",
+    "heuncli.loads.redundancy.advice",
+    "heuncli.output.snapshots.measure",
     "heuncli.study.ask.measure",
     "heuncli.study.ask.expectations",
-    "heuncli.report.export",
-    "heuncli.cli.app",
+    "heuncli.output.tables.export",
+    "heuncli.app.cli.app",
 }
 STRANGE = {"scipy", "rich", "typer", "numpy.ma", "pydantic", "importlib.metadata"}  # the last: pydantic, for plugins
 COSTLY = {"pathlib", "shutil", "hashlib", "numpy.typing"}  # 2 to 3 ms each, for one function of theirs
@@ -65,7 +69,7 @@ def loaded(*words: str, text: str = "") -> set[str]:
     """Modules that a command has loaded when it ends, fresh; its standard input is `text`."""
     code = (
         "import sys\n"
-        "from heuncli.cli.entry import enter\n"
+        "from heuncli.app.cli.entry import enter\n"
         "code = enter(sys.argv[1:])\n"
         "print(*sorted(sys.modules), file=sys.stderr)\n"
         "sys.exit(code)"
@@ -89,10 +93,10 @@ def test_a_plain_run_loads_what_it_needs() -> None:
     [
         (("run", "-"), BAR, SHAPED),
         (("run", "-"), DOOR, REDUNDANT),
-        (("model", "-"), DOOR, {"heuncli.redundancy.advice"}),
-        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.telling.measure"}),
-        (("run", "-", "--format", "json"), CHAIN, {"heuncli.report.export"}),
-        (("run", "--help"), "", {"heuncli.cli.app", "typer"}),
+        (("model", "-"), DOOR, {"heuncli.loads.redundancy.advice"}),
+        (("run", "-", "--measure", "final energy.kinetic"), CHAIN, {"heuncli.output.snapshots.measure"}),
+        (("run", "-", "--format", "json"), CHAIN, {"heuncli.output.tables.export"}),
+        (("run", "--help"), "", {"heuncli.app.cli.app", "typer"}),
     ],
 )
 def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], text: str, more: set[str]) -> None:
@@ -102,8 +106,14 @@ def test_what_is_left_out_is_loaded_where_it_is_wanted(words: tuple[str, ...], t
 def test_a_sweep_does_without_what_clusters_need() -> None:
     words = ("sweep", "-", "bodies.bar.angular_velocity.2=1,2", "--measure", "final energy.kinetic")
     found = loaded(*words, text=BAR)
-    assert "heuncli.commands.sweep.running" in found
-    clusters = {"distributed", "dask", "tornado", "heuncli.commands.sweep.cluster.flow", "heuncli.variants.files"}
+    assert "heuncli.app.commands.sweep.running" in found
+    clusters = {
+        "distributed",
+        "dask",
+        "tornado",
+        "heuncli.app.commands.sweep.cluster.flow",
+        "heuncli.analyses.variants.files",
+    }
     assert not found & (clusters | {"scipy", "rich", "pydantic"})
 
 
@@ -124,23 +134,25 @@ def test_what_is_said_to_be_left_out_exists() -> None:
 
 def test_validate_and_import_do_without_numpy() -> None:
     found = loaded("validate", "-", text=CHAIN)
-    assert "heuncli.spec.load" in found
-    assert not found & (STRANGE | {"numpy", "heuncli.conversion"})
+    assert "heuncli.scene.file_format.load" in found
+    assert not found & (STRANGE | {"numpy", "heuncli.scene.importers"})
     found = loaded("import", str(ROOT / "specs" / "arm.urdf"))
-    assert "heuncli.conversion.urdf.reader" in found
+    assert "heuncli.scene.importers.urdf.reader" in found
     assert not found & (STRANGE | {"numpy", "heuncli.study"})
 
 
 @pytest.mark.parametrize("words", [("--help",), ("run", "--help"), ("--version",), ("explain", "format")])
 def test_help_and_version_do_without_the_heavy_ones(words: tuple[str, ...]) -> None:
     found = loaded(*words) - loaded_by("typer")
-    assert not found & {"numpy", "scipy", "yaml", "rich", "heuncli.spec.load"}
+    assert not found & {"numpy", "scipy", "yaml", "rich", "heuncli.scene.file_format.load"}
 
 
 @pytest.mark.parametrize("words", ["--version", "--help"])
 def test_what_is_answered_at_once_needs_next_to_nothing(words: str) -> None:
     """Beside what Python loads when it starts."""
-    code = "import os, sys; before = {*sys.modules}; from heuncli.cli import at_once; at_once.answered(sys.argv[1:])"
+    code = (
+        "import os, sys; before = {*sys.modules}; from heuncli.app.cli import at_once; at_once.answered(sys.argv[1:])"
+    )
     shown = "print(*sorted({*sys.modules} - before), file=sys.stderr)"
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     run = subprocess.run(

@@ -7,17 +7,17 @@ from xml.etree import ElementTree
 
 import pytest
 
-from heuncli.commands.plot.request import PlotRequest
-from heuncli.commands.plot.sources import solution
-from heuncli.drawing.canvas import Look
-from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import drawn
-from heuncli.drawing.picture import svg
-from heuncli.pictures.histories import history
-from heuncli.report.table_units import asked
-from heuncli.results_schema import BLOWS, EVENTS
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.app.commands.plot.request import PlotRequest
+from heuncli.app.commands.plot.sources import solution
+from heuncli.output.drawing.canvas import Look
+from heuncli.output.drawing.layout import laid_out
+from heuncli.output.drawing.letters import drawn
+from heuncli.output.drawing.picture import svg
+from heuncli.output.figures.histories import history
+from heuncli.results.results_schema import BLOWS, EVENTS
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
+from heuncli.study.quantities.table_units import asked
 from tests.shared.folders import ROOT
 
 SPECS = sorted((ROOT / "specs").glob("*.yaml"))

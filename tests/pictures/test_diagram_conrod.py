@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.drawn_bars import CONROD, panels_of
 from tests.shared.drawn_panels import edges, heights

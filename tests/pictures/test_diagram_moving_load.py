@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from heuncli.output.snapshots.measure import measured, parse
 from heuncli.study.ask.study import Study
-from heuncli.telling.measure import measured, parse
 from tests.shared.drawn_bars import panels_of
 from tests.shared.drawn_panels import edges, heights, upright_at
 from tests.shared.scenes import study

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.drawing.canvas import Look
-from heuncli.drawing.figure import Blank, Trace
-from heuncli.drawing.letters import drawn as in_letters
-from heuncli.kinetostatics.section_axes import first_axis
-from heuncli.pictures.bars import WholeBar
-from heuncli.pictures.courses import Pictured
-from heuncli.pictures.diagrams import diagrams
-from heuncli.report.digits import Certainty
-from heuncli.shapes.rotations import cross
+from heuncli.loads.kinetostatics.section_axes import first_axis
+from heuncli.output.drawing.canvas import Look
+from heuncli.output.drawing.figure import Blank, Trace
+from heuncli.output.drawing.letters import drawn as in_letters
+from heuncli.output.figures.bars import WholeBar
+from heuncli.output.figures.courses import Pictured
+from heuncli.output.figures.diagrams import diagrams
+from heuncli.scene.shapes.rotations import cross
+from heuncli.study.quantities.digits import Certainty
 from tests.shared.drawn_bars import HELD_TWICE, SI, drawn, panels_of
 from tests.shared.scenes import study
 

@@ -7,17 +7,17 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.commands.show.command import REPORTS
-from heuncli.page.moving_page import page_data
-from heuncli.report.table_units import Units
-from heuncli.results import Array
-from heuncli.scenery.coupled_pulls import CoupledPull, coupled_pulls
-from heuncli.scenery.machine import Machine, machine_of
-from heuncli.scenery.poses import Poses, poses_in
-from heuncli.scenery.ropes import lines_of
-from heuncli.spec.load import load
+from heuncli.app.commands.show.command import REPORTS
+from heuncli.output.machine_geometry.coupled_pulls import CoupledPull, coupled_pulls
+from heuncli.output.machine_geometry.machine import Machine, machine_of
+from heuncli.output.machine_geometry.poses import Poses, poses_in
+from heuncli.output.machine_geometry.ropes import lines_of
+from heuncli.output.web_page.moving_page import page_data
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import places

@@ -11,15 +11,15 @@ import numpy as np
 import pytest
 import trimesh
 
-from heuncli.pictures.courses import instants
-from heuncli.results import Array
-from heuncli.scenery.elements import elements_of
-from heuncli.scenery.gltf import binary
-from heuncli.scenery.machine import Machine, machine_of, shapes_of
-from heuncli.scenery.poses import Poses, poses_of, up_of
-from heuncli.scenery.solids import ROUND, THIN
-from heuncli.spec.load import load
-from heuncli.spec.models import Body, Shape, Spec
+from heuncli.output.figures.courses import instants
+from heuncli.output.machine_geometry.elements import elements_of
+from heuncli.output.machine_geometry.gltf import binary
+from heuncli.output.machine_geometry.machine import Machine, machine_of, shapes_of
+from heuncli.output.machine_geometry.poses import Poses, poses_of, up_of
+from heuncli.output.machine_geometry.solids import ROUND, THIN
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Body, Shape, Spec
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS

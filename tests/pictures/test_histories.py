@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.pictures.courses import NumberCourse
-from heuncli.pictures.histories import PanelCourse, _axis_up
-from heuncli.pictures.thinning import STRETCHES, seen_places
-from heuncli.report.table_units import Units
-from heuncli.results import Array
+from heuncli.output.figures.courses import NumberCourse
+from heuncli.output.figures.histories import PanelCourse, _axis_up
+from heuncli.output.figures.thinning import STRETCHES, seen_places
+from heuncli.results.results import Array
 from heuncli.study.ask.measure import Peak
+from heuncli.study.quantities.table_units import Units
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, heights, read
 from tests.shared.folders import ROOT

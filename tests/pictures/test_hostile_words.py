@@ -7,7 +7,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from heuncli.foreign_text import shown
+from heuncli.base.foreign_text import shown
 from tests.shared.command import HANGING, Heun
 from tests.shared.plotted import SVG
 

@@ -7,9 +7,9 @@ import re
 import numpy as np
 import pytest
 
-from heuncli.drawing.canvas import BRAILLE, Look, look_of
-from heuncli.drawing.figure import Figure, Panel, Scaling, Spot, Trace
-from heuncli.drawing.letters import drawn
+from heuncli.output.drawing.canvas import BRAILLE, Look, look_of
+from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace
+from heuncli.output.drawing.letters import drawn
 from tests.shared.command import Heun
 
 CODE = re.compile(r"\x1b\[\d*m")

@@ -8,7 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pytest
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.shared.command import Heun
 from tests.shared.drawn_panels import DrawnPanel, read
 from tests.shared.plotted import SVG

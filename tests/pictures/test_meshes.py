@@ -7,13 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Array
-from heuncli.scenery.silhouettes import edges_seen, silhouette, solid_of
-from heuncli.scenery.solids import Surface, reached, surfaces_of
-from heuncli.scenery.thinned import MOST
-from heuncli.scenery.views import view_of
-from heuncli.spec.models import Shape
+from heuncli.output.machine_geometry.silhouettes import edges_seen, silhouette, solid_of
+from heuncli.output.machine_geometry.solids import Surface, reached, surfaces_of
+from heuncli.output.machine_geometry.thinned import MOST
+from heuncli.output.machine_geometry.views import view_of
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.meshes.reading import mesh_of
 from tests.shared import triangles as t
 
 DOWN = np.array([0.0, 0.0, -9.81])

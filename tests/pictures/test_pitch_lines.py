@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.scenery.machine import machine_of
-from heuncli.scenery.pitch_lines import pitch_looks
-from heuncli.spec.load import load
+from heuncli.output.machine_geometry.machine import machine_of
+from heuncli.output.machine_geometry.pitch_lines import pitch_looks
+from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1
 ground: {points: {O: [0, 0, 0], G: [0, -0.05, 0]}}

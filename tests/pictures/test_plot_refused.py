@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.commands.plot.kinds import EVERY, KINDS
-from heuncli.commands.plot.request import PlotRequest
-from heuncli.drawing import matplotlib_file
+from heuncli.app.commands.plot.kinds import EVERY, KINDS
+from heuncli.app.commands.plot.request import PlotRequest
+from heuncli.output.drawing import matplotlib_file
 from tests.shared.command import HANGING, Heun
 
 SECTIONED = (

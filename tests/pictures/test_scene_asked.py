@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.drawing.figure import Symbol
-from heuncli.drawing.symbols import LINKS, SYMBOLS
-from heuncli.joint_kinds import JOINTS, TYPES
-from heuncli.pictures.machine_items import HOLDS, TURNS, turning
-from heuncli.pictures.scenes import as_assembled
-from heuncli.spec.load import load
+from heuncli.base.joint_kinds import JOINTS, TYPES
+from heuncli.output.drawing.figure import Symbol
+from heuncli.output.drawing.symbols import LINKS, SYMBOLS
+from heuncli.output.figures.machine_items import HOLDS, TURNS, turning
+from heuncli.output.figures.scenes import as_assembled
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 from tests.shared.plotted import panels_of
 

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.results import Array
-from heuncli.scenery.views import SceneView, view_of
-from heuncli.spec.load import load
+from heuncli.output.machine_geometry.views import SceneView, view_of
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from tests.shared.command import Heun
 from tests.shared.plotted import PlottedPanel, far_from, panels_of, texts_of
 

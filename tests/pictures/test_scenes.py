@@ -10,17 +10,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.drawing.canvas import look_of
-from heuncli.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
-from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import drawn
-from heuncli.drawing.picture import Text, svg
-from heuncli.drawing.words import HIGH, wide
-from heuncli.pictures.courses import Pictured
-from heuncli.pictures.scenes import as_assembled, scene
-from heuncli.report.table_units import Units
-from heuncli.spec.load import load
+from heuncli.output.drawing.canvas import look_of
+from heuncli.output.drawing.figure import Figure, PlaceLabel, Polygon, Strokes
+from heuncli.output.drawing.layout import laid_out
+from heuncli.output.drawing.letters import drawn
+from heuncli.output.drawing.picture import Text, svg
+from heuncli.output.drawing.words import HIGH, wide
+from heuncli.output.figures.courses import Pictured
+from heuncli.output.figures.scenes import as_assembled, scene
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.workflow import solve
 from tests.shared.scenes import study
 

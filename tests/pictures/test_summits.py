@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.pictures.summits import ADDED, bounds_of, halved
+from heuncli.output.figures.summits import ADDED, bounds_of, halved
 from heuncli.study.search.extremes import sides_of_jumps
 
 

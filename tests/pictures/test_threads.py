@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.scenery.threads import threads_of
-from heuncli.spec.load import load
+from heuncli.output.machine_geometry.threads import threads_of
+from heuncli.scene.file_format.load import load
 
 SCENE = """heun: 1
 ground: {points: {A: [0, 0, 0], B: [0.2, 0, 0.5]}}

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.drawing.figure import Scaling
-from heuncli.drawing.ticks import ticks
+from heuncli.output.drawing.figure import Scaling
+from heuncli.output.drawing.ticks import ticks
 
 AXES = [
     Scaling("", 0.0, 1.0), Scaling("", -3e-7, 2.5e-6), Scaling("", 1e5, 1.5e6), Scaling("", 1013240.0, 1013252.0),

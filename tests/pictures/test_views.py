@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import Finding
-from heuncli.pictures.scenes import as_assembled
-from heuncli.scenery.views import SceneView, along, named, turned, view_of
-from heuncli.spec.load import load
+from heuncli.base.errors import Finding
+from heuncli.output.figures.scenes import as_assembled
+from heuncli.output.machine_geometry.views import SceneView, along, named, turned, view_of
+from heuncli.scene.file_format.load import load
 
 SPECS = Path(__file__).parents[2] / "specs"
 DOWN = np.array([0.0, 0.0, -9.81])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.scenery.machine import machine_of
-from heuncli.spec.load import load
+from heuncli.output.machine_geometry.machine import machine_of
+from heuncli.scene.file_format.load import load
 
 SCENE = """
 heun: 1

@@ -8,13 +8,13 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from heuncli.drawing.canvas import Look
-from heuncli.drawing.figure import Figure, Panel, Scaling, Spot, Trace, Upright
-from heuncli.drawing.layout import laid_out
-from heuncli.drawing.letters import drawn
-from heuncli.drawing.picture import Mark, Text
-from heuncli.drawing.room import WordBox
-from heuncli.drawing.words import BASE, HIGH, SMALL, wide
+from heuncli.output.drawing.canvas import Look
+from heuncli.output.drawing.figure import Figure, Panel, Scaling, Spot, Trace, Upright
+from heuncli.output.drawing.layout import laid_out
+from heuncli.output.drawing.letters import drawn
+from heuncli.output.drawing.picture import Mark, Text
+from heuncli.output.drawing.room import WordBox
+from heuncli.output.drawing.words import BASE, HIGH, SMALL, wide
 
 NARROW = WordBox(86.0, 0.0, 794.0, 400.0)
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.errors import HeunError, UsageError
+from heuncli.base.errors import HeunError, UsageError
 from tests.shared.command import HANGING
 
 WRONG: dict[str, list[Any]] = {

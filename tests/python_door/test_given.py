@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 import heuncli
-from heuncli.spec.source import read
+from heuncli.scene.file_format.source import read
 from tests.shared.command import HANGING, SPEC_TEXTS
 from tests.shared.folders import SPECS
 

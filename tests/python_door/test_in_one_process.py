@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli import memory_left
+from heuncli.base import memory_left
 from heuncli.study.solve import history
 from tests.shared.command import SPEC_TEXTS
 from tests.shared.folders import SPECS

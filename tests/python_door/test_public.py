@@ -83,7 +83,7 @@ def test_importing_loads_next_to_nothing() -> None:
 def test_solving_loads_no_command_line() -> None:
     code = "import heuncli\nheuncli.solve(text='{heun: 1, bodies: {a: {mass: 1, center: [0,0,0], inertia: [0,0,0]}}}')"
     found = fresh(code)
-    strange = ("heuncli.cli", "heuncli.commands", "scipy", "rich", "typer", "pandas", "matplotlib")
+    strange = ("heuncli.app.cli", "heuncli.app.commands", "scipy", "rich", "typer", "pandas", "matplotlib")
     assert not [name for name in found if name.startswith(strange)]
 
 

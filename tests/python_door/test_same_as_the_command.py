@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import heuncli
-from heuncli.results_schema import quantity
+from heuncli.results.results_schema import quantity
 from tests.shared.broken import FILES, head
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS

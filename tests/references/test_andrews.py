@@ -11,7 +11,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.published import PINS, START, andrews
 from tests.shared.published import spec_at
 from tests.shared.scenes import moving, near, solved

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.mechanism.model import Mechanism
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import Mechanism
 from tests.oracle.published import START, andrews_angles
 from tests.shared.drafted_mechanisms import X, Y, Z, body, joint, largest_gap, largest_rate_gap, point, scene, turned
 from tests.shared.published import printed_values

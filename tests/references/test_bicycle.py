@@ -8,10 +8,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.oscillations.study import modes
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base.errors import SolveError
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import study
 
 W, C, TILT = 1.02, 0.08, np.pi / 10

@@ -12,7 +12,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.bars import HEAD
 from tests.shared.scenes import near, solved
 

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from scipy.special import ellipj, ellipk
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import near, solved
 
 TIMES = (0.5, 1.0, 2.0, 5.0, 10.0, 100.0, 1000.0, 2000.0)

@@ -13,12 +13,12 @@ from junitparser import JUnitXml
 from scipy.integrate import quad, solve_ivp
 from scipy.special import ellipj, ellipk
 
-import heuncli.published.cases as cases
-from heuncli.published.cases import case_of, read
-from heuncli.published.compared import AGREES, COARSE, DIFFERS, OPEN, compared
-from heuncli.published.files import names, numbers_of, spec_of
-from heuncli.published.printed import printed
-from heuncli.spec.load import load
+import heuncli.analyses.published.cases as cases
+from heuncli.analyses.published.cases import case_of, read
+from heuncli.analyses.published.compared import AGREES, COARSE, DIFFERS, OPEN, compared
+from heuncli.analyses.published.files import names, numbers_of, spec_of
+from heuncli.analyses.published.printed import printed
+from heuncli.scene.file_format.load import load
 from tests.manual import proof
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT
@@ -144,7 +144,7 @@ def test_all_of_them_and_how_they_are_told(heun: Heun, folder: Path) -> None:
     assert max(map(len, done.stdout.splitlines())) <= 150 and "slowest 2" in done.stderr
     xmlschema.XMLSchema(str(SCHEMA)).validate(str(folder / "report.xml"))
     suites = list(JUnitXml.fromfile(str(folder / "report.xml")))
-    assert [suite.name for suite in suites] == [f"heuncli/published/numbers/{name}.yaml" for name in names()]
+    assert [suite.name for suite in suites] == [f"heuncli/analyses/published/numbers/{name}.yaml" for name in names()]
     numbers = [one for name in names() for table in compared_case(name) for one in table.numbers]
     assert sum(len(list(suite)) for suite in suites) == len(numbers) + len(suites)
 
@@ -172,7 +172,7 @@ def test_one_that_differs(heun: Heun, monkeypatch: pytest.MonkeyPatch, form: str
     assert "34.422149" in done.stdout and DIFFERS in done.stdout
     if form == "github":
         line = wrong.splitlines().index("      joints.knee.force.y: 34.422149") + 1
-        assert f"::error file=heuncli/published/numbers/sdfast_leg.yaml,line={line}" in done.stdout
+        assert f"::error file=heuncli/analyses/published/numbers/sdfast_leg.yaml,line={line}" in done.stdout
 
 
 def test_one_that_cannot_be_solved(heun: Heun, monkeypatch: pytest.MonkeyPatch) -> None:

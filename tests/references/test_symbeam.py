@@ -14,13 +14,13 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
-from heuncli.pictures.bars import WholeBar
-from heuncli.pictures.courses import Pictured
-from heuncli.pictures.diagrams import diagrams
-from heuncli.published.cases import case_of
-from heuncli.published.files import spec_of
-from heuncli.report.table_units import Units
+from heuncli.analyses.published.cases import case_of
+from heuncli.analyses.published.files import spec_of
+from heuncli.output.figures.bars import WholeBar
+from heuncli.output.figures.courses import Pictured
+from heuncli.output.figures.diagrams import diagrams
 from heuncli.study.ask.study import Study
+from heuncli.study.quantities.table_units import Units
 from tests.shared.drawn_panels import heights, panels, upright_at
 from tests.shared.scenes import near, study
 

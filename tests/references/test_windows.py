@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.oracle.published import windows
 from tests.shared.published import printed_values
 from tests.shared.scenes import moving, near, solved

@@ -8,19 +8,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.report.cut_runs import extremes_of_samples, one_source, runs_of
-from heuncli.report.labels import labels_of
-from heuncli.report.page import Page, page_of
-from heuncli.report.text_table import TextTable
-from heuncli.results import Array, Extremes, Place
-from heuncli.spec.load import load
+from heuncli.output.snapshots import searches
+from heuncli.output.tables.cut_runs import extremes_of_samples, one_source, runs_of
+from heuncli.output.tables.page import Page, page_of
+from heuncli.output.tables.text_table import TextTable
+from heuncli.results.results import Array, Extremes, Place
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.model.setup import Setup
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search import stretches
 from heuncli.study.workflow import solve
-from heuncli.telling import searches
 
 SPEC = """
 heun: 1
@@ -110,7 +110,7 @@ def test_of_too_many_numbers_the_samples_stand(solved: tuple[Study, Page, Extrem
 
 
 def test_the_command_shows_stresses_of_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    from heuncli.cli.entry import enter
+    from heuncli.app.cli.entry import enter
 
     path = tmp_path / "bar.yaml"
     path.write_text(SPEC)

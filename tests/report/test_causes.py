@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.report.export import to_csv
-from heuncli.report.labels import labels_of
-from heuncli.report.page import Page, page_of
-from heuncli.report.text_table import TextTable
-from heuncli.spec.load import load
+from heuncli.app.cli.entry import enter
+from heuncli.output.tables.export import to_csv
+from heuncli.output.tables.page import Page, page_of
+from heuncli.output.tables.text_table import TextTable
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.search.extremes import ColumnSearch
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS

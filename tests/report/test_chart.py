@@ -9,9 +9,7 @@ import math
 
 import pytest
 
-from heuncli.commands.charting import page as report
-from heuncli.commands.charting.letters import draw, letters
-from heuncli.commands.charting.results import (
+from heuncli.analyses.charting.results import (
     KINDS,
     ChartedRun,
     ChartResults,
@@ -19,12 +17,14 @@ from heuncli.commands.charting.results import (
     shown,
     with_front,
 )  # fmt: skip
-from heuncli.commands.charting.scale import Scale, scales
-from heuncli.records import replace
-from heuncli.report.export import dump
-from heuncli.report.page_width import fit
-from heuncli.report.text_table import WIDTH, plain
-from heuncli.tolerances import LOST
+from heuncli.app.commands.charting import page as report
+from heuncli.app.commands.charting.letters import draw, letters
+from heuncli.app.commands.charting.scale import Scale, scales
+from heuncli.base.records import replace
+from heuncli.base.tolerances import LOST
+from heuncli.output.tables.export import dump
+from heuncli.output.tables.page_width import fit
+from heuncli.output.tables.text_table import WIDTH, plain
 from tests.shared.fake_charts import FAILS, REFERENCE, TOO_LONG, chart, run
 
 

@@ -8,13 +8,13 @@ from random import Random
 
 import pytest
 
-from heuncli.commands.charting.labels import LabelBox, crosses, inside, placed
-from heuncli.commands.charting.picture import picture, stacked
-from heuncli.drawing import matplotlib_file
-from heuncli.drawing.picture import Line, Mark, Picture, Text, svg
-from heuncli.errors import HeunError
-from heuncli.foreign_text import shown
-from heuncli.records import replace
+from heuncli.app.commands.charting.labels import LabelBox, crosses, inside, placed
+from heuncli.app.commands.charting.picture import picture, stacked
+from heuncli.base.errors import HeunError
+from heuncli.base.foreign_text import shown
+from heuncli.base.records import replace
+from heuncli.output.drawing import matplotlib_file
+from heuncli.output.drawing.picture import Line, Mark, Picture, Text, svg
 from tests.shared.fake_charts import FAILS, TOO_LONG, chart, run
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import records
-from heuncli.report.heading import write_heading
-from heuncli.report.labels import JointInfo, Labels
-from heuncli.report.page import page_of
-from heuncli.report.text_table import plain
-from heuncli.results import Magnitudes, Results
+from heuncli.base import records
+from heuncli.output.tables.heading import write_heading
+from heuncli.output.tables.page import page_of
+from heuncli.output.tables.text_table import plain
+from heuncli.results.results import Magnitudes, Results
+from heuncli.study.quantities.labels import JointInfo, Labels
 from tests.shared.fakes import LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict
 
 ONE = np.array([0.5])

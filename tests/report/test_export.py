@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import LimitError
-from heuncli.report import export
-from heuncli.report.export import to_csv, to_json
-from heuncli.report.series import walk
+from heuncli.base.errors import LimitError
+from heuncli.output.tables import export
+from heuncli.output.tables.export import to_csv, to_json
+from heuncli.study.quantities.series import walk
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SolveError
-from heuncli.report.export import to_json
-from heuncli.results import Results
-from heuncli.results_schema import REPORTS, ROWS, SHARES, quantity
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError
+from heuncli.output.tables.export import to_json
+from heuncli.results.results import Results
+from heuncli.results.results_schema import REPORTS, ROWS, SHARES, quantity
+from heuncli.scene.file_format.load import load
 from heuncli.study.compose import recovery
 from heuncli.study.compose.finiteness import leaves, require_finite
 from heuncli.study.model.options import Options

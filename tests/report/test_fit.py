@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.page_width import fit
-from heuncli.report.text_table import TextColumn, TextTable, plain
-from heuncli.wrapping import wrapped
+from heuncli.base.wrapping import wrapped
+from heuncli.output.tables.page_width import fit
+from heuncli.output.tables.text_table import TextColumn, TextTable, plain
 
 WIDE = TextTable(
     "JOINTS",

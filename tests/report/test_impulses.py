@@ -11,20 +11,20 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import UsageError
-from heuncli.commands.run.scene import _strict
-from heuncli.errors import SpecError
-from heuncli.report.export import to_csv, to_json
-from heuncli.report.heading import write_heading
-from heuncli.report.labels import StopInfo
-from heuncli.report.page import page_of
-from heuncli.report.text_table import markdown, plain
-from heuncli.results import Block, Results
-from heuncli.spec.load import load
-from heuncli.spec.models import Expect
-from heuncli.spec.rules import not_yet
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.commands.run.scene import _strict
+from heuncli.base.errors import SpecError
+from heuncli.output.snapshots import measure
+from heuncli.output.tables.export import to_csv, to_json
+from heuncli.output.tables.heading import write_heading
+from heuncli.output.tables.page import page_of
+from heuncli.output.tables.text_table import markdown, plain
+from heuncli.results.results import Block, Results
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Expect
+from heuncli.scene.file_format.rules import not_yet
 from heuncli.study.ask.expectations import compare
-from heuncli.telling import measure
+from heuncli.study.quantities.labels import StopInfo
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, pendulum
 
 T = np.linspace(0.0, 2.0, 5)
@@ -64,7 +64,7 @@ def blow(t: float = 0.5, size: float = 1.0, *names: str) -> Block:
 
 
 def labels() -> Any:
-    from heuncli.records import replace as changed
+    from heuncli.base.records import replace as changed
 
     return changed(LABELS, stops={"buffer": StopInfo("guide.travel", None, 0.2)})
 

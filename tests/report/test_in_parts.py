@@ -13,17 +13,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import stored_arrays
-from heuncli.errors import OutputError, SolveError
-from heuncli.report import export
-from heuncli.report.export import csv_pieces, json_pieces
-from heuncli.report.labels import labels_of
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
-from heuncli.stored_arrays import ArrayStore
+from heuncli.base.errors import OutputError, SolveError
+from heuncli.output.tables import export
+from heuncli.output.tables.export import csv_pieces, json_pieces
+from heuncli.results import stored_arrays
+from heuncli.results.stored_arrays import ArrayStore
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.compose import parts, recovery
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.solve import load_errors
 from heuncli.study.workflow import solve
 from tests.shared.command import Heun
@@ -221,7 +221,7 @@ def little(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
         (load_errors, "CUTS_AT_ONCE", 2_000),
     ):  # fmt: skip
         monkeypatch.setattr(module, name, value)
-    monkeypatch.setattr("heuncli.integration.check.estimate.CHUNK", 100_000)
+    monkeypatch.setattr("heuncli.motion.integration.check.estimate.CHUNK", 100_000)
     peak(swinging(50), frozenset({"energy"}), json_pieces)  # what is loaded once
     yield
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.labels import ForceInfo, JointInfo, Labels, _section
-from heuncli.results_schema import quantity
-from heuncli.spec.models import End, Section
+from heuncli.results.results_schema import quantity
+from heuncli.scene.file_format.models import End, Section
+from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, _section
 
 KINDS = ("ball", "pin", "slide", "cylinder", "universal", "weld", "line", "plane", "rod")
 LABELS = Labels(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.report.model_text import WIDTH, note
+from heuncli.output.tables.model_text import WIDTH, note
 
 MODEL = {
     "space": "spatial",

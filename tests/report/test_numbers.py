@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from heuncli.report.digits import certainty, rough, style, trim, write, write_times
+from heuncli.study.quantities.digits import certainty, rough, style, trim, write, write_times
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, pendulum
 
 T = np.linspace(0.0, 2.0, 11)

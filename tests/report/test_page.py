@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.report.extremes_tables import MANY
-from heuncli.report.heading import write_heading
-from heuncli.report.page import Page, page_of
-from heuncli.report.text_table import plain
-from heuncli.results import Array, Extremes, Results
+from heuncli.output.tables.extremes_tables import MANY
+from heuncli.output.tables.heading import write_heading
+from heuncli.output.tables.page import Page, page_of
+from heuncli.output.tables.text_table import plain
+from heuncli.results.results import Array, Extremes, Results
 from heuncli.study.search import extremes as peaks
 from tests.shared.fakes import ACCURATE, LABELS, MAGNITUDES, FakeStudy, found_extremes, pendulum, restrict, vectors
 

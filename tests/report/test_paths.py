@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.nearest import begin_file
-from heuncli.report.export import to_json
-from heuncli.report.series import walk
-from heuncli.results_paths import find
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
-from heuncli.spec.names import names_in
-from heuncli.spec.rules.outcome import wrong_path
+from heuncli.base.errors import SpecError
+from heuncli.base.nearest import begin_file
+from heuncli.output.tables.export import to_json
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.names import names_in
+from heuncli.scene.file_format.rules.outcome import wrong_path
+from heuncli.study.quantities.series import walk
 from tests.shared.fakes import BLOW, LABELS, pendulum
 
 T = np.linspace(0.0, 2.0, 7)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.report.extremes_tables import NOT_SEARCHED
-from heuncli.results import Array
+from heuncli.output.tables.extremes_tables import NOT_SEARCHED
+from heuncli.results.results import Array
 from heuncli.study.search.extremes import MOST_COLUMNS, search
 from tests.shared.command import Heun
 from tests.shared.folders import ROOT

@@ -7,14 +7,14 @@ import json
 import numpy as np
 import pytest
 
-from heuncli.cli.entry import UsageError
-from heuncli.errors import SpecError
-from heuncli.path_hints import readings
-from heuncli.report.export import to_csv
-from heuncli.report.labels import labels_of
-from heuncli.results_paths import find
-from heuncli.run_places import path_of, words_of
-from heuncli.telling import measure
+from heuncli.app.cli.entry import UsageError
+from heuncli.base.errors import SpecError
+from heuncli.output.snapshots import measure
+from heuncli.output.tables.export import to_csv
+from heuncli.results.path_hints import readings
+from heuncli.results.results_paths import find
+from heuncli.results.run_places import path_of, words_of
+from heuncli.study.quantities.labels import labels_of
 from tests.shared.scenes import near, study
 
 P, LUG, END, W = 30.0, 0.3, 0.7, 4.0 * 9.81

@@ -7,17 +7,17 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from heuncli.errors import HeunError, SpecError
-from heuncli.expressions.units import parse_unit
-from heuncli.report.export import to_csv
-from heuncli.report.page import some_instants
-from heuncli.results import Results
-from heuncli.results_paths import find
-from heuncli.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
-from heuncli.spec.entries import fields_of
-from heuncli.spec.format import HeadEntry
-from heuncli.spec.load import load
-from heuncli.telling import measure
+from heuncli.base.errors import HeunError, SpecError
+from heuncli.base.units import parse_unit
+from heuncli.output.snapshots import measure
+from heuncli.output.tables.export import to_csv
+from heuncli.output.tables.page import some_instants
+from heuncli.results.results import Results
+from heuncli.results.results_paths import find
+from heuncli.results.results_schema import REPORTS, ROWS, TREE, Node, Quantity, quantity
+from heuncli.scene.file_format.entries import fields_of
+from heuncli.scene.file_format.format import HeadEntry
+from heuncli.scene.file_format.load import load
 from tests.shared.fakes import LABELS, FakeStudy, pendulum, vectors
 
 T = np.linspace(0.0, 2.0, 5)

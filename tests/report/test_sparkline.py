@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.report.sparkline import BLOCKS, PLAIN, histogram, letters, sparkline
+from heuncli.output.tables.sparkline import BLOCKS, PLAIN, histogram, letters, sparkline
 
 
 def test_each_number_has_its_height() -> None:

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.redundancy.turning_sums import factors
-from heuncli.report.certain_sums import sums_table
-from heuncli.report.digits import Certainty
+from heuncli.loads.redundancy.turning_sums import factors
+from heuncli.output.tables.certain_sums import sums_table
+from heuncli.study.quantities.digits import Certainty
 from tests.shared.fakes import pendulum
 
 T = np.linspace(0.0, 2.0, 5)

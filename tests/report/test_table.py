@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.report.text_table import TextColumn, TextTable, markdown, plain
+from heuncli.output.tables.text_table import TextColumn, TextTable, markdown, plain
 
 TABLE = TextTable(
     "HEADING  what it is",

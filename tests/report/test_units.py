@@ -7,10 +7,10 @@ import re
 
 import pytest
 
-from heuncli.cli.entry import enter
-from heuncli.errors import Finding
-from heuncli.report.digits import Certainty, with_units
-from heuncli.report.table_units import Units, asked
+from heuncli.app.cli.entry import enter
+from heuncli.base.errors import Finding
+from heuncli.study.quantities.digits import Certainty, with_units
+from heuncli.study.quantities.table_units import Units, asked
 from tests.shared.folders import SPECS
 
 

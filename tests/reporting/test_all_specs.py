@@ -7,12 +7,12 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.client_report.as_html import as_html
-from heuncli.client_report.as_markdown import as_markdown
-from heuncli.client_report.contents import report_of
-from heuncli.client_report.reported import Reported
-from heuncli.commands.reporting.cases import reported
-from heuncli.commands.reporting.request import ReportRequest
+from heuncli.app.commands.reporting.cases import reported
+from heuncli.app.commands.reporting.request import ReportRequest
+from heuncli.output.client_report.as_html import as_html
+from heuncli.output.client_report.as_markdown import as_markdown
+from heuncli.output.client_report.contents import report_of
+from heuncli.output.client_report.reported import Reported
 from tests.shared.page_reader import OURS, PageReader
 
 FOLDER = Path(__file__).parents[2] / "specs"

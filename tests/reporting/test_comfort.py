@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.client_report.extremes import ends_of
-from heuncli.commands.reporting.cases import reported
-from heuncli.commands.reporting.request import ReportRequest
-from heuncli.records import replace
+from heuncli.app.commands.reporting.cases import reported
+from heuncli.app.commands.reporting.request import ReportRequest
+from heuncli.base.records import replace
+from heuncli.output.client_report.extremes import ends_of
 from tests.shared.command import Heun
 from tests.shared.folders import SPECS
 from tests.shared.page_reader import PageReader

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import tests.shared
-from heuncli.errors import HeunError
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 from tests.shared.folders import ROOT, SPECS
 

@@ -8,8 +8,8 @@ from types import FrameType
 import numpy as np
 import pytest
 
-from heuncli.assembly.assemble import assemble
-from heuncli.mechanism.model import Assembly, Mechanism
+from heuncli.multibody.assembly.assemble import assemble
+from heuncli.multibody.mechanism.model import Assembly, Mechanism
 from tests.shared.drafted_mechanisms import (
     centre,
     index,

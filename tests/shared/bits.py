@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.records import fields
+from heuncli.base.records import fields
 
 Leaf = tuple[str, bytes | str]
 

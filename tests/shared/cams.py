@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 PERIOD = "interpolation: cubic, period: 360 deg"
 AT = {"slide": "[0.01, 0.1, 0]", "pin": "[0.3, 0.02, 0]"}

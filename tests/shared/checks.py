@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.oracle.read import GROUND, Joint, State, placed
 from tests.oracle.rows import coordinates, directions
 from tests.oracle.solve import OPEN

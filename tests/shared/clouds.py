@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 STEP = 1e-30
 Function = Callable[[complex], Array]

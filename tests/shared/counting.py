@@ -9,15 +9,15 @@ from typing import Any
 
 import pytest
 
-from heuncli.integration.evaluator import Evaluator
-from heuncli.kinetostatics import sections
-from heuncli.redundancy import self_stress
-from heuncli.report.labels import labels_of
-from heuncli.report.page import TABLE_DEFAULT, page_of
-from heuncli.spec.load import load
+from heuncli.loads.kinetostatics import sections
+from heuncli.loads.redundancy import self_stress
+from heuncli.motion.integration.evaluator import Evaluator
+from heuncli.output.snapshots.searches import rows
+from heuncli.output.tables.page import TABLE_DEFAULT, page_of
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.labels import labels_of
 from heuncli.study.workflow import solve
-from heuncli.telling.searches import rows
 
 Counts = Counter[str]
 

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
-from heuncli.shapes.rotations import about
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import about
 from tests.shared.flat_in_any_plane import PLANES, Draft, Z, acting, loads
 
 Scene = dict[str, Any]

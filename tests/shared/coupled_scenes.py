@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.results import Array
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Array
 from tests.oracle.read import GROUND, Placed, placed, state_at
 from tests.oracle.scenes import Maker
 from tests.oracle.turns import across, random_rotation, random_unit

@@ -8,11 +8,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.balancing.asked import BalanceOptions
-from heuncli.balancing.results import BalanceResults, OrderRow
-from heuncli.balancing.study import balance
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.results import BalanceResults, OrderRow
+from heuncli.analyses.balancing.study import balance
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 
 EYE = np.eye(3)

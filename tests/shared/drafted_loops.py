@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.mechanism.model import Mechanism
-from heuncli.shapes.rotations import from_vector
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.scene.shapes.rotations import from_vector
 from tests.shared.drafted_mechanisms import (
     X,
     body,

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import GROUND, Assembly, Body, Joint, Mechanism
-from heuncli.shapes.rotations import about, from_vector, to_vector
-from heuncli.spec.models import Directed, Drive
+from heuncli.multibody.mechanism.model import GROUND, Assembly, Body, Joint, Mechanism
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.models import Directed, Drive
+from heuncli.scene.shapes.rotations import about, from_vector, to_vector
 
 X, Y, Z = np.eye(3)
 

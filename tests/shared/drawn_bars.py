@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from heuncli.drawing.figure import Figure
-from heuncli.pictures.courses import Pictured
-from heuncli.pictures.diagrams import diagrams
-from heuncli.report.table_units import Units
+from heuncli.output.drawing.figure import Figure
+from heuncli.output.figures.courses import Pictured
+from heuncli.output.figures.diagrams import diagrams
 from heuncli.study.ask.study import Study
+from heuncli.study.quantities.table_units import Units
 from tests.shared.drawn_panels import DrawnPanel, panels
 
 SI = Units({})

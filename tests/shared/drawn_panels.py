@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.drawing.figure import Figure
-from heuncli.drawing.layout import laid_out
-from heuncli.drawing.picture import svg
-from heuncli.results import Array
+from heuncli.output.drawing.figure import Figure
+from heuncli.output.drawing.layout import laid_out
+from heuncli.output.drawing.picture import svg
+from heuncli.results.results import Array
 from tests.shared.plotted import SVG, PlottedPanel, panels_of
 
 

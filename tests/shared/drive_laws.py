@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from heuncli.results import Array, Results
+from heuncli.results.results import Array, Results
 from tests.shared.scenes import near, solved
 
 G = 9.81

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.response import numbers_of
-from heuncli.results import Array
-from heuncli.tree.layout import Layout
+from heuncli.multibody.response import numbers_of
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array
 from tests.shared.dual_kernel import dual_module
 from tests.shared.duals import Dual, gradient_of
 

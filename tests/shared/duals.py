@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from heuncli.kernel import libm
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 
 class Dual:

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from heuncli.expressions.programs import Pack
 from heuncli.kernel.choose import expressions, jets
+from heuncli.scene.expressions.programs import Pack
 from tests.shared.plain_kernel import plain_module
 
 Form = tuple[Any, Any]  # evaluator and derivatives

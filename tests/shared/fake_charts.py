@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.commands.charting.results import (
+from heuncli.analyses.charting.results import (
     COMPLETED,
     FAILED,
     NOT_RUN,

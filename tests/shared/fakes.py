@@ -9,14 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts
-from heuncli.kinetostatics.stretch import NODES, Stretch
-from heuncli.report.labels import ForceInfo, JointInfo, Labels, SectionInfo
-from heuncli.report.page import Page
-from heuncli.results import Array, Block, Extremes, Magnitudes, Results
-from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import REPORT_OF
+from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts
+from heuncli.loads.kinetostatics.stretch import NODES, Stretch
+from heuncli.output.tables.page import Page
+from heuncli.results.results import Array, Block, Extremes, Magnitudes, Results
+from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results_schema import REPORT_OF
 from heuncli.study.ask.study import Study
+from heuncli.study.quantities.labels import ForceInfo, JointInfo, Labels, SectionInfo
 from heuncli.study.search.extremes import ColumnSearch
 
 ACCURATE: Block = {

@@ -11,8 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
-from heuncli.shapes.rotations import about, from_vector
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import about, from_vector
 
 X, Y, Z = np.eye(3)
 TREE = {  # kinds of joints, and where their axes stand

@@ -7,10 +7,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from heuncli.cli import at_once
+from heuncli.app.cli import at_once
 
 HELP = Path(at_once.HELP)
-CODE = "import sys; from heuncli.cli import app; sys.exit(app.read(['--help']))"
+CODE = "import sys; from heuncli.app.cli import app; sys.exit(app.read(['--help']))"
 
 
 def help_of_typer(columns: int = at_once.USUAL) -> str:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from heuncli.conversion.asked import ImportAsked
-from heuncli.conversion.described import DescribedMachine
-from heuncli.conversion.readers import reader_of
-from heuncli.conversion.spec_text import spec_text
-from heuncli.conversion.xml_elements import read_elements
+from heuncli.scene.importers.asked import ImportAsked
+from heuncli.scene.importers.described import DescribedMachine
+from heuncli.scene.importers.readers import reader_of
+from heuncli.scene.importers.spec_text import spec_text
+from heuncli.scene.importers.xml_elements import read_elements
 
 
 def described(text: str | bytes, file: str = "model.xml", **asked: Any) -> DescribedMachine:

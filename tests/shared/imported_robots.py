@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from heuncli.conversion.described import DescribedBody, DescribedEntry, DescribedMachine
-from heuncli.conversion.spec_text import spec_text
-from heuncli.spec.source import parse
+from heuncli.scene.file_format.source import parse
+from heuncli.scene.importers.described import DescribedBody, DescribedEntry, DescribedMachine
+from heuncli.scene.importers.spec_text import spec_text
 from tests.shared.imported import described
 from tests.shared.pinocchio_answers import Asked, LinkMotion
 

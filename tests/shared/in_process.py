@@ -7,7 +7,7 @@ import io
 import sys
 from collections.abc import Iterator, Sequence
 
-from heuncli.cli.entry import enter
+from heuncli.app.cli.entry import enter
 from tests.shared.command import Done
 
 

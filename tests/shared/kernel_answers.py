@@ -13,11 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.cli.entry import enter
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.response import carried, columns, jacobian, tangent
-from heuncli.spec.load import load
+from heuncli.app.cli.entry import enter
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.multibody.response import carried, columns, jacobian, tangent
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.shared.folders import ROOT, SPECS
 

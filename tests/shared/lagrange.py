@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from heuncli.commands.lagrange.results import LagrangeResults
-from heuncli.commands.lagrange.study import LagrangeQuestion, lagrange
-from heuncli.spec.load import load
+from heuncli.analyses.lagrange.results import LagrangeResults
+from heuncli.analyses.lagrange.study import LagrangeQuestion, lagrange
+from heuncli.scene.file_format.load import load
 from tests.oracle.values import to_yaml
 
 ROD = "shapes: [{type: rod, from: [0, 0, 0], to: [0, 0, -1], mass: 1}], points: {o: [0, 0, 0], e: [0, 0, -1]}"

@@ -6,11 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.load_cases.gathered import gathered
-from heuncli.load_cases.model import LoadCases, LoadedBody
-from heuncli.results import Array
+from heuncli.analyses.load_cases.gathered import gathered
+from heuncli.analyses.load_cases.model import LoadCases, LoadedBody
+from heuncli.results.results import Array
+from heuncli.study.ask.asked_instants import parse
 from heuncli.study.ask.study import Study
-from heuncli.telling.asked_instants import parse
 
 
 def cases_of(run: Study, body: str, at: str) -> LoadCases:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from typing import Any
 
+from heuncli.output.snapshots import measure
 from heuncli.study.ask.study import Study
-from heuncli.telling import measure
 
 
 def measured(run: Study, words: str) -> dict[str, Any]:

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.assembly.gaps import size_of
-from heuncli.mechanism.model import GROUND, Mechanism
-from heuncli.records import record, replace
-from heuncli.results import Array
-from heuncli.shapes.rotations import from_vector, to_vector
+from heuncli.base.records import record, replace
+from heuncli.multibody.assembly.gaps import size_of
+from heuncli.multibody.mechanism.model import GROUND, Mechanism
+from heuncli.results.results import Array
+from heuncli.scene.shapes.rotations import from_vector, to_vector
 from tests.shared.drafted_mechanisms import body, joint, scene
 
 KINDS = ("pin", "ball", "universal", "cylinder", "slide", "line", "plane", "rod", "weld")

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 
 def unpacked(packed: str | float, count: int) -> Array:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
 from tests.shared.scenes import study
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.shared.scenes import terms_at
 
 

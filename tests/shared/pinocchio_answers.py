@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 Pair = tuple[Array, Array]
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 PlaceOf = Callable[[float, float], tuple[float, bool]]  # of a number at x, y: where on the axis, whether on it
 SVG = "{http://www.w3.org/2000/svg}"

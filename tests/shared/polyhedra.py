@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 Faces = list[Array]  # corners (m, 3) of each face, in order
 

@@ -6,10 +6,10 @@ import re
 from collections.abc import Sequence
 from functools import cache
 
-from heuncli.published.cases import case_of
-from heuncli.published.compared import ComparedTable, compared
-from heuncli.published.files import spec_of
-from heuncli.published.printed import printed
+from heuncli.analyses.published.cases import case_of
+from heuncli.analyses.published.compared import ComparedTable, compared
+from heuncli.analyses.published.files import spec_of
+from heuncli.analyses.published.printed import printed
 
 
 def spec_at(name: str, times: Sequence[float], tolerance: float) -> str:

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from random import Random
 from typing import Any
 
-from heuncli.expressions.programs import OPS
 from heuncli.kernel.choose import expressions
+from heuncli.scene.expressions.programs import OPS
 
 ONE = (
     "neg", "abs", "sign", "step", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log",

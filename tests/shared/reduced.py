@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.results import Results
-from heuncli.spec.models import Spec
+from heuncli.base import tolerances
+from heuncli.results.results import Results
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array, Block, Results
+from heuncli.results.results import Array, Block, Results
 from tests.oracle.tellings import Telling
 from tests.shared.scenes import largest, near
 

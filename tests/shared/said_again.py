@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.integration.check.changes import blows_apart
-from heuncli.results import Array
-from heuncli.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, below, kind_of_error
+from heuncli.motion.integration.check.changes import blows_apart
+from heuncli.results.results import Array
+from heuncli.results.results_schema import KIND_OF, SPACE, TREE, Node, Quantity, below, kind_of_error
 from heuncli.study.ask.study import Study
 
 Powers = tuple[int, int, int]

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.shared.chromium import Tab
 
 HELD = re.compile(r'<script type="application/json" id="data">(.*?)</script>', re.DOTALL)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 
 def fitted(counts: Array, errors: Array) -> float:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Array
-from heuncli.shapes.forms import Form, form
-from heuncli.spec.models import Shape, Vec
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Shape, Vec
+from heuncli.scene.shapes.forms import Form, form
 
 
 def vec(x: Array) -> Vec:

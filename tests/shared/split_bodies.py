@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from tests.oracle.turns import random_rotation
 
 Scene = dict[str, Any]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from heuncli.study.ask.study import Study
 from tests.oracle.masses import mass_of
 from tests.oracle.read import Model, Placed, model, state_at

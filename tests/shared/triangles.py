@@ -6,7 +6,7 @@ import struct
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 
 FACES = ((0, 4, 6, 2), (1, 3, 7, 5), (0, 1, 5, 4), (2, 6, 7, 3), (0, 2, 3, 1), (4, 5, 7, 6))  # of a box, outward
 

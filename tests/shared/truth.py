@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.run.request import MotionTask
-from heuncli.results import Array, Results
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.results.results import Array, Results
 from heuncli.study.ask.study import Study
 
 TRUTH, SECOND = 3e-15, 1e-14  # local tolerances; the run judged has 3e-14 at best

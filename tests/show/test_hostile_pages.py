@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.foreign_text import shown
-from heuncli.page.inlined import embedded, whole_page
+from heuncli.base.foreign_text import shown
+from heuncli.output.web_page.inlined import embedded, whole_page
 from tests.shared.command import TURNED, Heun
 from tests.shared.moving_pages import PageElements, data_of
 

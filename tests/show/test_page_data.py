@@ -11,19 +11,19 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.commands.show.command import REPORTS
-from heuncli.page.geometry import looks_of
-from heuncli.page.moving_page import moving_page
-from heuncli.page.number_rows import ZEROS
-from heuncli.report.export import to_json
-from heuncli.report.table_units import Units
-from heuncli.results import Array
-from heuncli.results_schema import leading_key
-from heuncli.scenery.poses import poses_of
-from heuncli.spec.load import load
+from heuncli.app.commands.show.command import REPORTS
+from heuncli.output.machine_geometry.poses import poses_of
+from heuncli.output.tables.export import to_json
+from heuncli.output.web_page.geometry import looks_of
+from heuncli.output.web_page.moving_page import moving_page
+from heuncli.output.web_page.number_rows import ZEROS
+from heuncli.results.results import Array
+from heuncli.results.results_schema import leading_key
+from heuncli.scene.file_format.load import load
 from heuncli.study.ask.measure import peak
 from heuncli.study.ask.study import Study
 from heuncli.study.model.options import Options
+from heuncli.study.quantities.table_units import Units
 from heuncli.study.workflow import solve
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of, places, unpacked

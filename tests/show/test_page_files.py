@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.page import inlined
-from heuncli.page.inlined import EXPORT, FOLDER, IMPORT, in_order, policy, script, text_of, whole_page
+from heuncli.output.web_page import inlined
+from heuncli.output.web_page.inlined import EXPORT, FOLDER, IMPORT, in_order, policy, script, text_of, whole_page
 from tests.shared.folders import ROOT
 from tests.shared.moving_pages import PageElements
 

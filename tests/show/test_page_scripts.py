@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.page.inlined import in_order, script
-from heuncli.report.digits import Style
+from heuncli.output.web_page.inlined import in_order, script
+from heuncli.study.quantities.digits import Style
 
 NODE = shutil.which("node")
 pytestmark = [

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.commands.show.command import MOST_BODIES
-from heuncli.page.frames import MOST
+from heuncli.app.commands.show.command import MOST_BODIES
+from heuncli.output.web_page.frames import MOST
 from tests.shared.command import TURNED, Heun
 from tests.shared.folders import SPECS
 from tests.shared.moving_pages import data_of, unpacked
@@ -55,7 +55,7 @@ def test_a_scene_of_too_many_bodies_is_refused_before_it_is_solved(
     def never(*_: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("heuncli.commands.show.command.solve", never)
+    monkeypatch.setattr("heuncli.app.commands.show.command.solve", never)
     bodies = "".join(f"  b{k}: {{mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n" for k in range(MOST_BODIES + 1))
     (folder / "many.yaml").write_text(f"heun: 1\nbodies:\n{bodies}")
     done = heun("show", "many.yaml", "-o", "x.html")

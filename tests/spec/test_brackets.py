@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import Problem, SpecError
-from heuncli.spec.source import parse
+from heuncli.base.errors import Problem, SpecError
+from heuncli.scene.file_format.source import parse
 from tests.shared.folders import SPECS
 
 TEXT = """\

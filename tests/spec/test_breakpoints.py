@@ -7,15 +7,15 @@ from random import Random
 
 import pytest
 
-from heuncli import tolerances
-from heuncli.errors import LimitError
-from heuncli.expressions.curves import fit
-from heuncli.expressions.discontinuities import beyond, breaks_within, discontinuities, jumps, one_sided_limits
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, TableFunction
-from heuncli.integration.methods.dop853 import DOP853
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.segments import limits_of
+from heuncli.base import tolerances
+from heuncli.base.errors import LimitError
+from heuncli.motion.integration.methods.dop853 import DOP853
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.segments import limits_of
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.discontinuities import beyond, breaks_within, discontinuities, jumps, one_sided_limits
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression, TableFunction
 from heuncli.study.solve.history import require_steps
 
 TRIANGLE = fit("triangle", [0.0, 0.25, 0.5], [0.0, 1.0, 0.0], "linear", None, 0.5)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import HeunError
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.shared.broken import FILES, cured, head, is_in_words
 from tests.shared.folders import ROOT

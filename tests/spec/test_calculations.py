@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import Finding
-from heuncli.expressions.calculations import Calculations
-from heuncli.expressions.grammar import GivenParameter, Scope, compile_expression
-from heuncli.expressions.units import FORCE, LENGTH
+from heuncli.base.errors import Finding
+from heuncli.base.units import FORCE, LENGTH
+from heuncli.scene.expressions.calculations import Calculations
+from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
 from tests.shared.bits import bits
 
 FIRST = {"a": 2.0, "b": -0.5, "n": 3.0}

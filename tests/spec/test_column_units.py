@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.columns import CsvError, columns_of
-from heuncli.spec.headings import unit_in_heading
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.columns import CsvError, columns_of
+from heuncli.scene.file_format.headings import unit_in_heading
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
 
 # By definition, in SI: nothing here comes from heun's own table.
 SIZES = {

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec import columns
-from heuncli.spec.columns import CsvError, NoColumn, columns_of
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format import columns
+from heuncli.scene.file_format.columns import CsvError, NoColumn, columns_of
+from heuncli.scene.file_format.load import load
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1]}}\n"
 CELLS = [
@@ -85,7 +85,7 @@ def test_two_million_rows(tmp_path: Path) -> None:
     (tmp_path / "large.csv").write_text(f"x,y\n{rows}\n")
     (tmp_path / "spec.yaml").write_text(BODY + "tables: {f: {file: large.csv, x: x, y: y}}\n")
     code = (
-        "import time\nfrom pathlib import Path\nfrom heuncli.cli.entry import enter\n"
+        "import time\nfrom pathlib import Path\nfrom heuncli.app.cli.entry import enter\n"
         "assert enter(['validate', 'spec.yaml']) == 0\nstatus = Path('/proc/self/status').read_text().split()\n"
         "print(time.process_time(), status[status.index('VmHWM:') + 1])"
     )

@@ -7,11 +7,11 @@ import random
 
 import pytest
 
-from heuncli.errors import Finding
-from heuncli.expressions.grammar import GivenParameter, Scope, compile_expression
-from heuncli.expressions.programs import Expression
-from heuncli.expressions.units import LENGTH, UNITS, parse_unit
-from heuncli.spec.quantity import condition
+from heuncli.base.errors import Finding
+from heuncli.base.units import LENGTH, UNITS, parse_unit
+from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.quantity import condition
 
 JOINTS = {"shaft": "pin", "guide": "slide"}
 GIVEN = {"L": GivenParameter(LENGTH, "0.5 m")}

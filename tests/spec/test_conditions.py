@@ -6,9 +6,9 @@ import math
 
 import pytest
 
-from heuncli.spec.load import load
-from heuncli.variants.axes import AxisError
-from heuncli.variants.conditions import MeasureCondition, condition_of, in_si
+from heuncli.analyses.variants.axes import AxisError
+from heuncli.analyses.variants.conditions import MeasureCondition, condition_of, in_si
+from heuncli.scene.file_format.load import load
 from tests.shared.folders import SPECS
 
 HINT = "such as 'x < 3'"

@@ -11,14 +11,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from heuncli.errors import SpecError
-from heuncli.expressions.curves import fit
-from heuncli.expressions.discontinuities import discontinuities
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack, TableFunction
+from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
-from heuncli.spec.columns import CsvError, NoColumn, columns_of
-from heuncli.spec.load import load
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.discontinuities import discontinuities
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression, Pack, TableFunction
+from heuncli.scene.file_format.columns import CsvError, NoColumn, columns_of
+from heuncli.scene.file_format.load import load
 
 BODY = "heun: 1\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [1, 1, 1], points: {p: [0, 0, 0]}}}\n"
 

@@ -8,14 +8,14 @@ import re
 
 import pytest
 
-from heuncli.errors import Finding, SpecError
-from heuncli.expressions import dimensions
-from heuncli.expressions.curves import fit
-from heuncli.expressions.grammar import GivenParameter, Scope, compile_expression
-from heuncli.expressions.programs import Expression
-from heuncli.expressions.units import NUMBER, Dimension, parse_unit
-from heuncli.records import replace
-from heuncli.spec.load import load
+from heuncli.base.errors import Finding, SpecError
+from heuncli.base.records import replace
+from heuncli.base.units import NUMBER, Dimension, parse_unit
+from heuncli.scene.expressions import dimensions
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.grammar import GivenParameter, Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format.load import load
 from tests.shared.folders import ROOT
 from tests.shared.manual import TEXTS, file_of
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.results import Results
+from heuncli.base.errors import SpecError
+from heuncli.results.results import Results
 from tests.shared.scenes import solved
 
 SCENE = """\

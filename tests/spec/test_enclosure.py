@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.expressions.curves import fit
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import enclosure, jets
 from heuncli.kernel.form import KERNEL
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.random_programs import (
     HELD,
     TAKEN,

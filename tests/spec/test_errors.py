@@ -7,11 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
-from heuncli.spec.models import Spec
-from heuncli.spec.rules import not_yet
-from heuncli.spec.rules.every import RULES, DraftDocument
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.rules import not_yet
+from heuncli.scene.file_format.rules.every import RULES, DraftDocument
 from tests.shared.folders import ROOT
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.spec.source import parse
-from heuncli.variants.axes import ParameterAxis, axis_of, figure_of
+from heuncli.analyses.variants.axes import ParameterAxis, axis_of, figure_of
+from heuncli.scene.file_format.source import parse
 
 
 @pytest.mark.parametrize("text", ["3", "+3", "010", ".5", "5.", "1e3", "1E-3", "-0.0"])

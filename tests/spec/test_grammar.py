@@ -6,9 +6,9 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from heuncli.errors import Finding
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression
+from heuncli.base.errors import Finding
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression
 
 SCOPE = Scope(
     parameters={"L": 1.5, "broken": None},

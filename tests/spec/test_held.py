@@ -10,10 +10,10 @@ from typing import Any
 
 import pytest
 
-from heuncli.expressions.curves import fit
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import OPS, Expression, Pack
 from heuncli.kernel.choose import expressions
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import OPS, Expression, Pack
 from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program
 

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 import heuncli
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 
 PACKAGE = Path(heuncli.__file__).parent
 ANALYSIS = "analysis: {duration: 2, samples: 11}\n"

@@ -8,12 +8,12 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.expressions.curves import fit
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.integrals import begun_at, integral
-from heuncli.expressions.programs import Expression, Pack
+from heuncli.base.errors import SpecError
 from heuncli.kernel.choose import expressions
+from heuncli.scene.expressions.curves import fit
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.integrals import begun_at, integral
+from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.evaluators import COMPILED, PLAIN, answers
 from tests.shared.scenes import near
 

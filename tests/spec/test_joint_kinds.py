@@ -7,9 +7,9 @@ from typing import get_args
 
 import pytest
 
-from heuncli.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, Kind
-from heuncli.spec import format as f
-from heuncli.spec.entries import fields_of, keys_of
+from heuncli.base.joint_kinds import ABOUT_AXIS, FLAT, FREE, JOINTS, LINE, POINT, RATES, SYNONYMS, TYPES, Kind
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.entries import fields_of, keys_of
 
 IN_PLANE = {kind.name: kind for kind in FLAT.values()}
 IN_SPACE = {name: kind for name, kind in JOINTS.items() if name not in IN_PLANE}

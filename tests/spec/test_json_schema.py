@@ -13,12 +13,12 @@ import pytest
 import yaml
 from jsonschema import Draft7Validator
 
-from heuncli.joint_kinds import TYPES
-from heuncli.report.export import to_json
-from heuncli.report.results_json_schema import results_schema
-from heuncli.results_schema import REPORTS, SHARES
-from heuncli.spec.json_schema import spec_schema
-from heuncli.spec.load import load
+from heuncli.base.joint_kinds import TYPES
+from heuncli.output.tables.export import to_json
+from heuncli.output.tables.results_json_schema import results_schema
+from heuncli.results.results_schema import REPORTS, SHARES
+from heuncli.scene.file_format.json_schema import spec_schema
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from heuncli.study.workflow import solve
 from tests.manual.keys import PLACES

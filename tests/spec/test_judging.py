@@ -13,14 +13,14 @@ import pytest
 from pydantic_core import ValidationError
 
 import heuncli
-from heuncli.errors import Finding, SpecError
-from heuncli.expressions.programs import Expression
-from heuncli.spec import document
-from heuncli.spec.entries import Entry, fields_of
-from heuncli.spec.fields import Context
-from heuncli.spec.judging import judged
-from heuncli.spec.load import load
-from heuncli.spec.pydantic_models import model_of
+from heuncli.base.errors import Finding, SpecError
+from heuncli.scene.expressions.programs import Expression
+from heuncli.scene.file_format import document
+from heuncli.scene.file_format.entries import Entry, fields_of
+from heuncli.scene.file_format.fields import Context
+from heuncli.scene.file_format.judging import judged
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.pydantic_models import model_of
 
 SPECS = Path(heuncli.__file__).parents[1] / "specs"
 FILES = sorted([*SPECS.glob("*.yaml"), *SPECS.glob("broken/*.yaml")])

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.spec.named_files import FileNotKept
+from heuncli.analyses.variants.asking import Asker, Recipe
+from heuncli.analyses.variants.axes import axis_of
+from heuncli.analyses.variants.files import with_files, with_more_files
+from heuncli.analyses.variants.plans import Plan, plan_of
+from heuncli.output.snapshots import measure
+from heuncli.scene.file_format.named_files import FileNotKept
 from heuncli.study.model.options import Options
-from heuncli.telling import measure
-from heuncli.variants.asking import Asker, Recipe
-from heuncli.variants.axes import axis_of
-from heuncli.variants.files import with_files, with_more_files
-from heuncli.variants.plans import Plan, plan_of
 from tests.shared import triangles
 
 DRIVEN = """\

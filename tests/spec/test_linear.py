@@ -8,12 +8,12 @@ from collections.abc import Callable
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.nearest import begin_file, did_you_mean
-from heuncli.path_hints import meant
-from heuncli.spec.brackets import QUOTED
-from heuncli.spec.load import load
-from heuncli.spec.quantity import OVER_UNIT, WITH_UNIT, Scope, product_hint
+from heuncli.base.errors import SpecError
+from heuncli.base.nearest import begin_file, did_you_mean
+from heuncli.results.path_hints import meant
+from heuncli.scene.file_format.brackets import QUOTED
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.quantity import OVER_UNIT, WITH_UNIT, Scope, product_hint
 
 pytestmark = pytest.mark.heavy  # reading alone: no kernel is at work
 

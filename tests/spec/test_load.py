@@ -13,11 +13,11 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from heuncli.errors import SpecError
-from heuncli.records import fields
-from heuncli.spec import models as m
-from heuncli.spec.load import load
-from heuncli.spec.rules import not_yet
+from heuncli.base.errors import SpecError
+from heuncli.base.records import fields
+from heuncli.scene.file_format import models as m
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.rules import not_yet
 
 POINT = "{mass: 1, center: [0, 0, 0], inertia: [0, 0, 0], points: {p: [0, 0, 0], q: [1, 2, 3]}}"
 
@@ -447,7 +447,7 @@ def test_standard_input_looks_for_tables_where_it_is(tmp_path: Path, monkeypatch
 
 def test_the_numeric_part_can_know_the_types_without_yaml_and_pydantic() -> None:
     code = (
-        "import sys, heuncli.spec.models, heuncli.expressions.programs; "
+        "import sys, heuncli.scene.file_format.models, heuncli.scene.expressions.programs; "
         "print([m for m in ('yaml', 'pydantic', 'numpy', 'scipy', 'rich', 'typer') if m in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"
@@ -456,7 +456,7 @@ def test_the_numeric_part_can_know_the_types_without_yaml_and_pydantic() -> None
 def test_reading_needs_neither_numpy_nor_scipy_where_there_are_no_tables() -> None:
     text = "heun: 1\\nbodies: {b: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}\\n"
     code = (
-        f"import sys; from heuncli.spec.load import load; load('x.yaml', text='{text}'); "
+        f"import sys; from heuncli.scene.file_format.load import load; load('x.yaml', text='{text}'); "
         "print([m for m in ('numpy', 'scipy', 'rich', 'typer') if m in sys.modules])"
     )
     assert subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True).stdout == "[]\n"

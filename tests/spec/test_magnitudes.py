@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.number_range import are_in_range, is_in_range
-from heuncli.shapes.forms import form
-from heuncli.spec import format_shapes as fs
-from heuncli.spec.entries import fields_of
-from heuncli.spec.load import load
-from heuncli.spec.rules.products import mass_of
+from heuncli.base.errors import SpecError
+from heuncli.base.number_range import are_in_range, is_in_range
+from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.entries import fields_of
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.rules.products import mass_of
+from heuncli.scene.shapes.forms import form
 from tests.shared.solids import SOLIDS
 
 SCENE = """\

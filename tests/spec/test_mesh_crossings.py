@@ -8,9 +8,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from heuncli.errors import Finding
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Array
+from heuncli.base.errors import Finding
+from heuncli.results.results import Array
+from heuncli.scene.meshes.reading import mesh_of
 from tests.shared import triangles as t
 from tests.shared.solids import rotation
 

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from heuncli.errors import Finding, SpecError
-from heuncli.meshes.model import TriangleMesh
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Array
-from heuncli.spec.load import load
+from heuncli.base.errors import Finding, SpecError
+from heuncli.results.results import Array
+from heuncli.scene.file_format.load import load
+from heuncli.scene.meshes.model import TriangleMesh
+from heuncli.scene.meshes.reading import mesh_of
 from tests.shared import triangles as t
 
 UNIT = t.box()

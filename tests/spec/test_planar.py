@@ -6,8 +6,8 @@ import re
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import near, solved
 
 SCENE = """

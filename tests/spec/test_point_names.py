@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import Finding
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.spec.quantity import condition
+from heuncli.base.errors import Finding
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.file_format.quantity import condition
 
 POINTS = {"drill": ["top", "bit"], "rod": ["top", "eye"], "bare": [], "ground": ["post", "eye"]}
 SCOPE = Scope({"q": 3.0}, {"shaft": "pin", "points": "pin"}, in_time=True, points=POINTS)

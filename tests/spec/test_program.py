@@ -13,10 +13,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from heuncli.expressions.discontinuities import discontinuities
-from heuncli.expressions.grammar import Scope, compile_expression
-from heuncli.expressions.programs import Expression, Pack
 from heuncli.kernel.choose import expressions, jets
+from heuncli.scene.expressions.discontinuities import discontinuities
+from heuncli.scene.expressions.grammar import Scope, compile_expression
+from heuncli.scene.expressions.programs import Expression, Pack
 from tests.shared.evaluators import COMPILED, PLAIN, answers, bits
 from tests.shared.plain_kernel import plain_module
 from tests.shared.random_programs import VARIABLES, random_program

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from heuncli.errors import Finding
-from heuncli.expressions import units as u
-from heuncli.expressions.grammar import Scope
-from heuncli.spec.quantity import in_time, number
+from heuncli.base import units as u
+from heuncli.base.errors import Finding
+from heuncli.scene.expressions.grammar import Scope
+from heuncli.scene.file_format.quantity import in_time, number
 
 SCOPE = Scope(parameters={"L": 2.0, "m": 3.0})
 

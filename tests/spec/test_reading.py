@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from heuncli.errors import Finding, SpecError
-from heuncli.spec.load import load
-from heuncli.spec.reading import read_bytes
+from heuncli.base.errors import Finding, SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.reading import read_bytes
 
 SPEC = "heun: 1\nbodies: {ball: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}\n"
 MOST = 1000
@@ -37,7 +37,7 @@ def test_the_null_device_is_empty() -> None:
 def test_a_file_beyond_the_limit_is_refused_by_its_size(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     with (tmp_path / "large").open("wb") as file:
         file.truncate(1_000_000_000)
-    monkeypatch.setattr("heuncli.spec.reading._bounded", None)  # it is not read
+    monkeypatch.setattr("heuncli.scene.file_format.reading._bounded", None)  # it is not read
     code, message = refusal(str(tmp_path / "large"), 64_000_000)
     assert (code, message) == ("too-large", "this has 1000 MB; at most 64 MB are read")
 
@@ -112,7 +112,7 @@ def test_what_cannot_be_opened_is_a_word(
 def test_a_folder_that_is_gone(tmp_path: Path) -> None:
     code = (
         "import os, sys\nos.mkdir('gone')\nos.chdir('gone')\nos.rmdir('../gone')\n"
-        "from heuncli.cli.entry import enter\nsys.exit(enter(['run', 'spec.yaml']))"
+        "from heuncli.app.cli.entry import enter\nsys.exit(enter(['run', 'spec.yaml']))"
     )
     path = str(Path(__file__).parents[2])  # and no empty one: NumPy cannot be imported by way of a folder that is gone
     run = subprocess.run([sys.executable, "-P", "-c", code], cwd=tmp_path, env={**os.environ, "PYTHONPATH": path},

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import SolveError, SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SolveError, SpecError
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import near, solved
 
 SCENE = """heun: 1

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
-from heuncli.spec.source import SMALLEST, SourceFile, parse, plain, read
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.source import SMALLEST, SourceFile, parse, plain, read
 
 
 def codes(text: str) -> list[tuple[str, int, int]]:

@@ -10,16 +10,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.entries import fields_of
-from heuncli.spec.format import BallJoint, ForceEntry, PinJoint
-from heuncli.spec.load import load
-from heuncli.spec.lookups import GIVEN, KEYS, KIND, Log, Lookup, WatchedDocument, changed_in_document
-from heuncli.spec.models import Spec
-from heuncli.spec.overrides import FIGURE, of_words
-from heuncli.spec.sharing import same
-from heuncli.spec.source import parse
-from heuncli.spec.variants import SpecVariants
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.entries import fields_of
+from heuncli.scene.file_format.format import BallJoint, ForceEntry, PinJoint
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.lookups import GIVEN, KEYS, KIND, Log, Lookup, WatchedDocument, changed_in_document
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.overrides import FIGURE, of_words
+from heuncli.scene.file_format.sharing import same
+from heuncli.scene.file_format.source import parse
+from heuncli.scene.file_format.variants import SpecVariants
 from tests.shared.bits import bits
 from tests.shared.folders import ROOT, SPECS
 

@@ -6,13 +6,13 @@ import math
 
 import pytest
 
-from heuncli import tolerances
-from heuncli.errors import HeunError, Problem
-from heuncli.mechanism.build import build
-from heuncli.mechanism.model import Mechanism
-from heuncli.spec.load import load
-from heuncli.spec.rules import not_yet
-from heuncli.tree.prepare import PreparedScene, prepare
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, Problem
+from heuncli.multibody.mechanism.build import build
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.tree.prepare import PreparedScene, prepare
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.rules import not_yet
 
 TOP = """\
 heun: 1

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from heuncli.errors import SpecError
-from heuncli.spec.load import load
+from heuncli.base.errors import SpecError
+from heuncli.scene.file_format.load import load
 
 CART = """\
 heun: 1

@@ -11,11 +11,11 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Place
-from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import BLOWS
-from heuncli.spec.models import Expect
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Place
+from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results_schema import BLOWS
+from heuncli.scene.file_format.models import Expect
 from heuncli.study.ask.measure import MeasureRequest, Peak, peak, value
 from heuncli.study.ask.study import Study
 

@@ -10,12 +10,12 @@ from typing import NoReturn
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import HeunError, Problem
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Mask
-from heuncli.results_paths import find
-from heuncli.spec.models import Curve, Expect
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, Problem
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array, Mask
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.models import Curve, Expect
 from heuncli.study.ask.measure import NOT_CLAIMED, report_of, stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.search.crossings import Bracket, roots

@@ -1,6 +1,6 @@
 """The events of a motion: when conditions change, those in time and coordinates and those on numbers of the results.
 
-The first are met by the kernel (integration/check/changes.py). The others are searched for after the run: a number of
+The first are met by the kernel (motion/integration/check/changes.py). The others are searched for after the run: a number of
 the results is taken against its limit, a vector by its magnitude, a run of cuts over its whole stretch. A motion that
 ends where such a number passes its limit is solved twice: as a whole, or as far as it goes, and up to there.
 """
@@ -14,16 +14,16 @@ from dataclasses import replace as changed
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import SolveError
-from heuncli.integration.check.changes import Changes, blows_apart
-from heuncli.named_tuples import NamedTuple
-from heuncli.records import replace
-from heuncli.results import Array, Block, Results, Status
-from heuncli.results_paths import find
-from heuncli.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
-from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
-from heuncli.spec.resolve_couplings import at_least
+from heuncli.base import tolerances
+from heuncli.base.errors import SolveError
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
+from heuncli.motion.integration.check.changes import Changes, blows_apart
+from heuncli.results.results import Array, Block, Results, Status
+from heuncli.results.results_paths import find
+from heuncli.results.results_schema import CUT, EVENTS, KIND_OF, MAGNITUDES, SHARES, kind_of_error, quantity
+from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
+from heuncli.scene.file_format.resolve_couplings import at_least
 from heuncli.study.ask.measure import report_of, stated_error
 from heuncli.study.ask.study import Study
 from heuncli.study.compose.recovery import recover

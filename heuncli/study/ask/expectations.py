@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import HeunError, Problem, SourceLocation
-from heuncli.records import record, replace
-from heuncli.results import Array, Results
-from heuncli.results_paths import find
-from heuncli.spec.models import Expect
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, Problem, SourceLocation
+from heuncli.base.records import record, replace
+from heuncli.results.results import Array, Results
+from heuncli.results.results_paths import find
+from heuncli.scene.file_format.models import Expect
 from heuncli.study.ask.measure import NOT_CLAIMED, MeasureRequest, Peak, lost_from, peak
 from heuncli.study.ask.study import Study
 

@@ -10,14 +10,14 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.collectives.counted import LoadHistory
-from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.results import Array, Mask, Results
-from heuncli.results_paths import find
-from heuncli.results_schema import BLOWS, REPORTS, with_shared
+from heuncli.base import tolerances
+from heuncli.base.errors import LimitError, Problem, SolveError
+from heuncli.results.results import Array, Mask, Results
+from heuncli.results.results_paths import find
+from heuncli.results.results_schema import BLOWS, REPORTS, with_shared
 from heuncli.study.ask.measure import NOT_CLAIMED, NotOneNumber, is_even, report_of, several
 from heuncli.study.ask.study import Study
+from heuncli.study.load_cycles.counted import LoadHistory
 from heuncli.study.search.columns import StudyColumns
 from heuncli.study.search.extremes import GOOD_ENOUGH, ColumnSearch, distinct, finite
 from heuncli.study.search.turnings import with_turnings

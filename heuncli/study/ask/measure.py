@@ -9,12 +9,13 @@ from typing import Literal
 
 import numpy as np
 
-from heuncli import results_schema, tolerances
-from heuncli.errors import HeunError, Problem
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Place, Results
-from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import (
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError, Problem
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results import results_schema
+from heuncli.results.results import Array, Place, Results
+from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results_schema import (
     BLOWS,
     CUT,
     EVENTS,

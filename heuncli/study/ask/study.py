@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.records import record
-from heuncli.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
-from heuncli.results_paths import Numbers, find
-from heuncli.results_schema import REPORTS, SHARED, SHARES, with_shared
-from heuncli.spec.models import Spec
+from heuncli.base.records import record
+from heuncli.results.results import Accuracy, Array, Block, Extremes, Magnitudes, Place, Results
+from heuncli.results.results_paths import Numbers, find
+from heuncli.results.results_schema import REPORTS, SHARED, SHARES, with_shared
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.finiteness import require_finite
 from heuncli.study.compose.recovery import Recovery, recover
 from heuncli.study.compose.results import compose, known_blocks
@@ -28,7 +28,7 @@ from heuncli.study.search.instants import search_times
 from heuncli.study.solve.history import History, resample
 
 if TYPE_CHECKING:  # loaded where there are conditions, or something strikes
-    from heuncli.integration.check.changes import Changes
+    from heuncli.motion.integration.check.changes import Changes
     from heuncli.study.compose.impulses import Impulses
     from heuncli.study.compose.near_singular import TellsOpen
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.kinetostatics.magnitudes import inertia_scale
-from heuncli.mechanism.model import GROUND
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.magnitudes import inertia_scale
+from heuncli.multibody.mechanism.model import GROUND
+from heuncli.results.results import Array
 from heuncli.study.compose.recovery import Recovery
 
 NAMED = 3  # bodies that are named

@@ -7,10 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.contacts.blows import met_freely
-from heuncli.kinetostatics.balance import balance_residual
-from heuncli.kinetostatics.energy import energy_drift, magnitude_of_work, power_imbalance
-from heuncli.results import Accuracy, Array
+from heuncli.loads.kinetostatics.balance import balance_residual
+from heuncli.loads.kinetostatics.energy import energy_drift, magnitude_of_work, power_imbalance
+from heuncli.motion.integration.contacts.blows import met_freely
+from heuncli.results.results import Accuracy, Array
 from heuncli.study.compose.recovery import OF_ENERGY, Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from heuncli import tolerances
-from heuncli.spec.couplings import Belt
-from heuncli.spec.models import Spec
-from heuncli.spec.resolve_couplings import PUSHES, at_least
+from heuncli.base import tolerances
+from heuncli.scene.file_format.couplings import Belt
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.resolve_couplings import PUSHES, at_least
 from heuncli.study.compose.impulses import Impulses
 
 STRUCK = (

@@ -3,10 +3,10 @@
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
 
 The way of a joint's reaction, a type each: the kernel's answers (`Recovered`) are summed up to `JointLoads`
-(kinetostatics/reactions.py), split where redundancy asks for it (redundancy/resolve.py), and become a `JointBlock`
+(loads/kinetostatics/reactions.py), split where redundancy asks for it (loads/redundancy/resolve.py), and become a `JointBlock`
 here, with shares by cause, turned into the axes asked for, and open where no law decides. JSON is written of that block
-(report/export.py). For CSV and tables it becomes a `Series` (report/series.py), for tables a `NumberRow` a component
-(report/table_blocks.py), whose text is a cell of a `TextTable` (report/text_table.py).
+(output/tables/export.py). For CSV and tables it becomes a `Series` (study/quantities/series.py), for tables a `NumberRow` a component
+(output/tables/table_blocks.py), whose text is a cell of a `TextTable` (output/tables/text_table.py).
 """
 
 from __future__ import annotations
@@ -16,20 +16,20 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.coordinates import coordinates, points
-from heuncli.kinetostatics.coupling_numbers import coupling_block
-from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions
-from heuncli.kinetostatics.energy import system_vector
-from heuncli.kinetostatics.foundation import element_keys, foundation
-from heuncli.kinetostatics.joint_axes import axes_at, put_in_axes
-from heuncli.kinetostatics.momentum import Momenta, momenta
-from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
-from heuncli.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
-from heuncli.results_schema import SHARES
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, whole_joint_actions
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.coordinates import coordinates, points
+from heuncli.loads.kinetostatics.coupling_numbers import coupling_block
+from heuncli.loads.kinetostatics.couplings import CouplingLoads, coupling_actions
+from heuncli.loads.kinetostatics.energy import system_vector
+from heuncli.loads.kinetostatics.foundation import element_keys, foundation
+from heuncli.loads.kinetostatics.joint_axes import axes_at, put_in_axes
+from heuncli.loads.kinetostatics.momentum import Momenta, momenta
+from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.multibody.mechanism.model import GROUND, BushingLoad, JointLoad, PairLoad
+from heuncli.results.results import Array, Block, BodyBlock, ForceBlock, JointBlock, Mask
+from heuncli.results.results_schema import SHARES
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.selection import chosen
 
@@ -60,7 +60,7 @@ def blocks(recovery: Recovery, wanted: Set[str]) -> dict[str, Any]:
     if "energy" in wanted:
         shown["energy"] = recovery.energy
     if "motion" in wanted:
-        from heuncli.kinetostatics.attitudes import quaternions, rodrigues  # tables do not show them
+        from heuncli.loads.kinetostatics.attitudes import quaternions, rodrigues  # tables do not show them
 
         turns = quaternions(layout, recovered)
         vectors = rodrigues(turns)
@@ -141,7 +141,7 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
     if not recovery.setup.cuts:
         return block
     # only scenes with sections load it
-    from heuncli.kinetostatics.sections import attachments, section
+    from heuncli.loads.kinetostatics.sections import attachments, section
 
     actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
     for asked in recovery.setup.cuts:
@@ -149,13 +149,13 @@ def sections(recovery: Recovery, by_cause: bool = False) -> Block:
         cuts = asked.laid_for(on)
         is_open: Mapping[str, Mask] = {}
         if stress is not None:
-            from heuncli.redundancy.open_components import names_in_section, open_in_section
+            from heuncli.loads.redundancy.open_components import names_in_section, open_in_section
 
             is_open = open_in_section(cuts, states, recovery.joints, recovery.couplings, stress)
         own = section(cuts, states, scene.mechanism.gravity, on, is_open, scene.mechanism.planar)
         block[cuts.name] = own | ({"open": names_in_section(is_open)} if is_open else {})
         if by_cause:
-            from heuncli.kinetostatics.section_shares import section_shares
+            from heuncli.loads.kinetostatics.section_shares import section_shares
 
             block[cuts.name]["shares"] = section_shares(cuts, scene.layout, states, recovery.shares, is_open)
     return block
@@ -178,16 +178,16 @@ def told_coupling(recovery: Recovery, own: CouplingLoads) -> dict[str, Any]:
     given, names = own.coupling.given, [body.name for body in mechanism.bodies]
     block = coupling_block(own, names, pretension(own, recovery.loads))
     if given.type in ("gear", "screw", "belt"):
-        from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+        from heuncli.loads.kinetostatics.drives_told import TOLD  # few scenes have them
 
         struck = bool(recovery.recovered.loads.shape[1] < len(layout.tables["loads"]))  # in a blow no load acts
         block |= {k: v for k, v in TOLD[given.type](given, own.carried, struck).items() if k not in block}
     if own.friction is not None:
-        from heuncli.kinetostatics.thread_friction import efficiency  # few scenes have it
+        from heuncli.loads.kinetostatics.thread_friction import efficiency  # few scenes have it
 
         block["efficiency"] = efficiency(own, tolerances.NO_FORCE * recovery.load_magnitudes.by_unit["N"])
     if given.type == "cam":
-        from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+        from heuncli.loads.kinetostatics.cams import pressure_angle  # few scenes have them
 
         block["pressure_angle"] = pressure_angle(own, mechanism.joints, recovery.states)
     return block

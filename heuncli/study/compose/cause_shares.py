@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.coupling_numbers import numbers_of
-from heuncli.kinetostatics.shares import Shares, foundation_shares, joint_shares
-from heuncli.mechanism.model import Mechanism
-from heuncli.results import Array, Block
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.coupling_numbers import numbers_of
+from heuncli.loads.kinetostatics.shares import Shares, foundation_shares, joint_shares
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.results.results import Array, Block
 
 
 def put_shares(shown: dict[str, Any], shares: Shares, mechanism: Mechanism, states: BodyStates, about: Array) -> None:

@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import Problem, SolveError
-from heuncli.results import Array, Mask, Results
-from heuncli.results_schema import BLOWS, REPORT_OF, SPACE, Quantity, quantity
+from heuncli.base.errors import Problem, SolveError
+from heuncli.results.results import Array, Mask, Results
+from heuncli.results.results_schema import BLOWS, REPORT_OF, SPACE, Quantity, quantity
 
 # where a number may be none: loads that supports leave open, the axis or line of a wrench that has none
 MAY_BE_NONE = (

@@ -14,18 +14,18 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.check.shared_blows import matched
-from heuncli.integration.contacts.blows import DRIVES, Jump
-from heuncli.integration.diagnosis.solvability import Wording, require_solvable
-from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import Action, ActionEnd
-from heuncli.kinetostatics.balance import balance_residual
-from heuncli.kinetostatics.magnitudes import magnitudes
-from heuncli.mechanism.model import Mechanism
-from heuncli.records import fields, record, replace
-from heuncli.response import Columns
-from heuncli.results import Array, Block, CertainSum
-from heuncli.results_schema import AT_A_BLOW, BLOWS, BY_CAUSE, ROWS, SECTION_FORCES, SECTION_MOMENTS, SHARES
+from heuncli.base.records import fields, record, replace
+from heuncli.loads.kinetostatics.actions import Action, ActionEnd
+from heuncli.loads.kinetostatics.balance import balance_residual
+from heuncli.loads.kinetostatics.magnitudes import magnitudes
+from heuncli.motion.integration.check.shared_blows import matched
+from heuncli.motion.integration.contacts.blows import DRIVES, Jump
+from heuncli.motion.integration.diagnosis.solvability import Wording, require_solvable
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.response import Columns
+from heuncli.results.results import Array, Block, CertainSum
+from heuncli.results.results_schema import AT_A_BLOW, BLOWS, BY_CAUSE, ROWS, SECTION_FORCES, SECTION_MOMENTS, SHARES
 from heuncli.study.compose.blocks import blocks
 from heuncli.study.compose.recovery import Recovery, certain_sums
 from heuncli.study.model.setup import Setup

@@ -14,16 +14,16 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.check.estimate import recovered_at
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.trajectory import Trajectory
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Indices, Mask
-from heuncli.results_schema import SPACE, quantity
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.motion.integration.check.estimate import recovered_at
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array, Indices, Mask
+from heuncli.results.results_schema import SPACE, quantity
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
-from heuncli.tree.layout import Layout
 
 AMPLE = 10.0  # times the change: errors were 0.2 of it in the median of 4,711 instants, 3.4 at the most
 DIRECTIONS = 3  # in which a state is moved: that none of them meets the weak one is a matter of 1e-3

@@ -24,11 +24,11 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.errors import SolveError
-from heuncli.kinetostatics.foundation import inertia_loads, largest_force, no_force
-from heuncli.results import Array
-from heuncli.results_schema import quantity
-from heuncli.stored_arrays import ArrayStore, StoredArray
+from heuncli.base.errors import SolveError
+from heuncli.loads.kinetostatics.foundation import inertia_loads, largest_force, no_force
+from heuncli.results.results import Array
+from heuncli.results.results_schema import quantity
+from heuncli.results.stored_arrays import ArrayStore, StoredArray
 from heuncli.study.compose.accuracy import Balance
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.finiteness import require_finite_blocks

@@ -10,26 +10,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
-from heuncli.integration.diagnosis.solvability import require_directions, require_solvable
-from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
-from heuncli.kinetostatics.bodies import BodyStates, body_states
-from heuncli.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads, rope_actions
-from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
-from heuncli.kinetostatics.reactions import JointLoads, at_instants, joint_loads
-from heuncli.mechanism.model import PairLoad
-from heuncli.records import record, replace
-from heuncli.results import Array, Block, CertainSum, Magnitudes, Mask
-from heuncli.results_schema import BLOWS, SHARED
+from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
+from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
+from heuncli.loads.kinetostatics.couplings import CouplingLoads, coupling_actions, coupling_loads, rope_actions
+from heuncli.loads.kinetostatics.energy import energy
+from heuncli.loads.kinetostatics.magnitudes import inertia_scale, magnitudes, magnitudes_of_loads
+from heuncli.loads.kinetostatics.reactions import JointLoads, at_instants, joint_loads
+from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.motion.integration.diagnosis.solvability import require_directions, require_solvable
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.model import PairLoad
+from heuncli.results.results import Array, Block, CertainSum, Magnitudes, Mask
+from heuncli.results.results_schema import BLOWS, SHARED
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import SeenInstants
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains, or sections, or loads are told by cause
-    from heuncli.kinetostatics.shares import Shares
-    from heuncli.redundancy.resolve import Resolution
-    from heuncli.redundancy.self_stress import SelfStress
+    from heuncli.loads.kinetostatics.shares import Shares
+    from heuncli.loads.redundancy.resolve import Resolution
+    from heuncli.loads.redundancy.self_stress import SelfStress
 
 
 HUNG_ON_RANK = SHARED  # reports that ask for the rank of the closures
@@ -86,7 +86,7 @@ class Recovery:
         layout = self.setup.scene.layout
         if not layout.rows:
             return None
-        from heuncli.redundancy.resolve import Resolution, resolve  # a tree starts faster without it
+        from heuncli.loads.redundancy.resolve import Resolution, resolve  # a tree starts faster without it
 
         if self.told:
             return self.flanked(Resolution(self.unsplit))
@@ -100,8 +100,8 @@ class Recovery:
         layout = self.setup.scene.layout
         if not layout.mechanism.couplings:
             return found
-        from heuncli.kinetostatics.flanks import with_flanks  # few scenes have gears
-        from heuncli.redundancy.open_flanks import with_open_flanks
+        from heuncli.loads.kinetostatics.flanks import with_flanks  # few scenes have gears
+        from heuncli.loads.redundancy.open_flanks import with_open_flanks
 
         couplings = self.couplings_of(found)
         left, stress = (
@@ -162,7 +162,7 @@ class Recovery:
         found = applied_loads(self.setup.scene.mechanism, self.states, self.recovered)
         if not any(isinstance(own.load, PairLoad) and (own.length == 0.0).any() for own in found):
             return found
-        from heuncli.integration.diagnosis.coincident_points import parting  # hardly any scene needs it
+        from heuncli.motion.integration.diagnosis.coincident_points import parting  # hardly any scene needs it
 
         layout, recovered = self.setup.scene.layout, self.recovered
         return [
@@ -175,8 +175,8 @@ class Recovery:
     @cached_property
     def shares(self) -> Shares:
         """The joints' loads by their causes, after the same split; of instants that were recovered with causes."""
-        from heuncli.kinetostatics.flanks import with_flanks
-        from heuncli.kinetostatics.shares import alone, members_of, shares_of  # few runs ask for them
+        from heuncli.loads.kinetostatics.flanks import with_flanks
+        from heuncli.loads.kinetostatics.shares import alone, members_of, shares_of  # few runs ask for them
 
         layout = self.setup.scene.layout
         own = None if self.causes is None else {name: [k] for k, name in enumerate(self.causes)}
@@ -262,7 +262,7 @@ def recover(setup: Setup, recovered: Recovered, least_norm: bool, compared: Seen
         require_directions(setup.scene, recovered)
     found = Recovery(setup, recovered, least_norm, compared=compared)
     if setup.scene.mechanism.rubbing and found.decided is not None:
-        from heuncli.redundancy.rubbing import require_certain  # few scenes need it
+        from heuncli.loads.redundancy.rubbing import require_certain  # few scenes need it
 
         require_certain(setup.scene.layout, found.decided.searched, found.states, recovered.times)
     return found

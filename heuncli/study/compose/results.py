@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from heuncli.integration.determined_motion import integrated_after_all
+from heuncli.base.named_tuples import NamedTuple
 from heuncli.kernel.choose import KERNEL
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Block, Results
-from heuncli.results_schema import BLOWS
+from heuncli.motion.integration.determined_motion import integrated_after_all
+from heuncli.results.results import Array, Block, Results
+from heuncli.results.results_schema import BLOWS
 from heuncli.study.compose.accuracy import Balance, accuracy_of
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.finiteness import require_finite

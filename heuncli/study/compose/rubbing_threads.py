@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from heuncli import tolerances
-from heuncli.spec.couplings import Screw
-from heuncli.spec.models import Spec
+from heuncli.base import tolerances
+from heuncli.scene.file_format.couplings import Screw
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
 STRUCK = (

@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.evaluator import Recovered
-from heuncli.mechanism.model import JointLoad, Mechanism, ThreadLoad
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.model import JointLoad, Mechanism, ThreadLoad
+from heuncli.results.results import Array
 
 MOST_NAMED = 3
 # what hangs on friction at an instant: loads and accelerations, and no place, velocity or energy

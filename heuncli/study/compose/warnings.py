@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from heuncli import tolerances
-from heuncli.integration.contacts.shared_impulses import sharing_warning
-from heuncli.integration.diagnosis.off_sheaves import slanting
-from heuncli.kinetostatics.couplings import CouplingLoads
-from heuncli.mechanism.model import Mechanism
-from heuncli.results import Array, JointBlock, Status
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.couplings import CouplingLoads
+from heuncli.motion.integration.contacts.shared_impulses import sharing_warning
+from heuncli.motion.integration.diagnosis.off_sheaves import slanting
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.results.results import Array, JointBlock, Status
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.history import History

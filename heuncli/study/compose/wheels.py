@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.spec.couplings import RollingWheel
-from heuncli.spec.models import Spec
+from heuncli.base import tolerances
+from heuncli.scene.file_format.couplings import RollingWheel
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.compose.impulses import Impulses
 
 LIFTS = "the wheel {} would have to be pulled onto its plane: it lifts"

@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from heuncli.errors import Problem, SolveError, SourceLocation
-from heuncli.spec.models import Spec
+from heuncli.base.errors import Problem, SolveError, SourceLocation
+from heuncli.scene.file_format.models import Spec
 
 NAMED = re.compile(r"\b(?:joints|bodies|drives|forces|stops|impulses|couplings|rolling|sections|analysis)\.\w+")
 # what takes part in a blow is told by its bare name

@@ -10,16 +10,16 @@ from contextlib import suppress
 
 import numpy as np
 
-from heuncli.errors import LimitError, SolveError
-from heuncli.integration.check.fewer_stages import try_fewer_stages
-from heuncli.integration.check.runs import Runs
-from heuncli.integration.methods.method import Method
-from heuncli.integration.run.errors import Eventful, Stiff
-from heuncli.integration.run.kernel_loop import depends
-from heuncli.integration.run.request import MotionTask, StoppingRules
-from heuncli.integration.segments import discontinuities_of
-from heuncli.integration.trajectory import Trajectory
-from heuncli.method_rows import row_of
+from heuncli.base.errors import LimitError, SolveError
+from heuncli.base.method_rows import row_of
+from heuncli.motion.integration.check.fewer_stages import try_fewer_stages
+from heuncli.motion.integration.check.runs import Runs
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.run.errors import Eventful, Stiff
+from heuncli.motion.integration.run.kernel_loop import depends
+from heuncli.motion.integration.run.request import MotionTask, StoppingRules
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.trajectory import Trajectory
 from heuncli.study.model.counts_and_lists import count
 from heuncli.study.model.method_choice import is_smooth
 from heuncli.study.model.setup import Setup

@@ -11,13 +11,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.errors import LimitError, Problem
-from heuncli.integration.run.step_records import KEPT
-from heuncli.mechanism.model import BushingLoad
-from heuncli.records import record
-from heuncli.response import answer_kinds
-from heuncli.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
-from heuncli.spec.models import ResultCondition
+from heuncli.base.errors import LimitError, Problem
+from heuncli.base.records import record
+from heuncli.motion.integration.run.step_records import KEPT
+from heuncli.multibody.mechanism.model import BushingLoad
+from heuncli.multibody.response import answer_kinds
+from heuncli.results.results_schema import CUT, REPORT_OF, ROWS, SHARES, Quantity, is_share
+from heuncli.scene.file_format.models import ResultCondition
 from heuncli.study.model.setup import Setup
 
 ANSWERS = 3.0  # times the kernel's answers at an instant: those of both runs, and what is made of them beside

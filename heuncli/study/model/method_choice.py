@@ -1,8 +1,8 @@
 """Which method `auto` begins with, and why, by what can be seen of the scene and of the tolerance beforehand.
 
-Driven motions that leave no freedom are followed and not integrated (integration/determined_motion.py). What turns out
-to be stiff on the way, or cut by events at nearly every step, is begun anew (integration/run/stiffness.py,
-integration/run/event_frequency.py).
+Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). What turns out
+to be stiff on the way, or cut by events at nearly every step, is begun anew (motion/integration/run/stiffness.py,
+motion/integration/run/event_frequency.py).
 """
 
 from __future__ import annotations
@@ -11,17 +11,17 @@ import math
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.kernel_loop import depends
-from heuncli.integration.segments import discontinuities_of
-from heuncli.mechanism.model import Mechanism
-from heuncli.method_rows import DEFAULT
-from heuncli.results import Array
-from heuncli.spec.models import Spec
+from heuncli.base import tolerances
+from heuncli.base.method_rows import DEFAULT
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.kernel_loop import depends
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.tree.layout import Layout
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.counts_and_lists import some
-from heuncli.tree.layout import Layout
 
 FINE = "Verner98"
 LONG = 100.0  # turns or swings from which on a conservative motion is called long

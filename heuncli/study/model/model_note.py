@@ -7,20 +7,20 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
-from heuncli.integration.run.runner import Runner
-from heuncli.joint_kinds import JOINTS
-from heuncli.mechanism.model import BushingLoad, Mechanism, ThreadLoad
-from heuncli.reduction.model import Reduced
-from heuncli.redundancy.count import Redundancy
-from heuncli.results import Block, Mask
+from heuncli.base import tolerances
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.loads.redundancy.count import Redundancy
+from heuncli.motion.integration.methods.method import GLOBAL, QUATERNION, RECENTRED, Method
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.multibody.mechanism.model import BushingLoad, Mechanism, ThreadLoad
+from heuncli.multibody.reduction.model import Reduced
+from heuncli.multibody.tree.layout import Layout
+from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.results.results import Block, Mask
 from heuncli.study.model.counts_and_lists import count, some
-from heuncli.tree.layout import Layout
-from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:  # loaded where a scene has closed chains
-    from heuncli.redundancy.self_stress import SelfStress
+    from heuncli.loads.redundancy.self_stress import SelfStress
 
 COUNTED_FROM = {GLOBAL: "counted from the drawn ones: none can pass a half turn", RECENTRED: "anew in each step"}
 
@@ -49,7 +49,7 @@ def model_note(scene: PreparedScene, runner: Runner, method: str, found: Redunda
         block["couplings"] = len(mechanism.couplings)
     block["reasons"] = reasons(scene, block)
     if rolls(mechanism):
-        from heuncli.redundancy.poses import freedoms_of_pose  # few scenes have wheels
+        from heuncli.loads.redundancy.poses import freedoms_of_pose  # few scenes have wheels
 
         block["pose_freedoms"] = freedoms_of_pose(runner) - scene.undetermined
         block["reasons"].insert(1, poses_and_speeds(block))

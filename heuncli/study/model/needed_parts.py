@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
-from heuncli.expressions.programs import Expression, is_of_load, is_of_point
-from heuncli.records import fields
-from heuncli.results_schema import BLOWS, EVENTS, SHARES
-from heuncli.spec.models import Condition, End, Spec
+from heuncli.base.records import fields
+from heuncli.results.results_schema import BLOWS, EVENTS, SHARES
+from heuncli.scene.expressions.programs import Expression, is_of_load, is_of_point
+from heuncli.scene.file_format.models import Condition, End, Spec
 from heuncli.study.model.counts_and_lists import some
 from heuncli.study.model.selection import Selection, entries_of
 

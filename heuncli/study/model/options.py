@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from heuncli.errors import Problem, SpecError
-from heuncli.method_rows import canonical, row_of
-from heuncli.records import record
-from heuncli.results_schema import REPORTS, with_shared
-from heuncli.spec.methods import unfit
-from heuncli.spec.models import Spec
+from heuncli.base.errors import Problem, SpecError
+from heuncli.base.method_rows import canonical, row_of
+from heuncli.base.records import record
+from heuncli.results.results_schema import REPORTS, with_shared
+from heuncli.scene.file_format.methods import unfit
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.memory_estimate import Room
 from heuncli.study.model.selection import EntryKeys, Selection
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.kinetostatics.bodies import body_states
-from heuncli.kinetostatics.coordinates import coordinates
-from heuncli.rest.pose import Pose
+from heuncli.loads.equilibrium.pose import Pose
+from heuncli.loads.kinetostatics.bodies import body_states
+from heuncli.loads.kinetostatics.coordinates import coordinates
+from heuncli.multibody.tree.layout import Layout
 from heuncli.study.model.counts_and_lists import some
-from heuncli.tree.layout import Layout
 
 UNITS = {"angle": "rad", "travel": "m"}
 DIFFERS = 1e-3  # rad, or of the size: what is told of two poses

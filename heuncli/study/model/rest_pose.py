@@ -6,29 +6,29 @@ import time
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import Problem, SolveError
-from heuncli.integration.diagnosis.solvability import Wording, require_solvable
-from heuncli.integration.run.runner import Runner
-from heuncli.linearisation.displacements import displacement
-from heuncli.linearisation.indifference import indifference
-from heuncli.linearisation.smoothness import examine_laws, find_roots
-from heuncli.mechanism.model import Mechanism
-from heuncli.records import record, replace
-from heuncli.rest.digits import beside
-from heuncli.rest.finer import CheckedPose, checked, left_by_the_way
-from heuncli.rest.pose import bearing
-from heuncli.rest.rest_check import require_still
-from heuncli.rest.search import RestSearch
-from heuncli.rest.slopes import decided_by
-from heuncli.rest.stability import Motion, Stability, stability
-from heuncli.rest.steady_states import going_on, require_constant, require_steady, require_together
-from heuncli.results import Array, Status
+from heuncli.base import tolerances
+from heuncli.base.errors import Problem, SolveError
+from heuncli.base.records import record, replace
+from heuncli.loads.equilibrium.digits import beside
+from heuncli.loads.equilibrium.finer import CheckedPose, checked, left_by_the_way
+from heuncli.loads.equilibrium.pose import bearing
+from heuncli.loads.equilibrium.rest_check import require_still
+from heuncli.loads.equilibrium.search import RestSearch
+from heuncli.loads.equilibrium.slopes import decided_by
+from heuncli.loads.equilibrium.stability import Motion, Stability, stability
+from heuncli.loads.equilibrium.steady_states import going_on, require_constant, require_steady, require_together
+from heuncli.motion.integration.diagnosis.solvability import Wording, require_solvable
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.linearisation.displacements import displacement
+from heuncli.motion.linearisation.indifference import indifference
+from heuncli.motion.linearisation.smoothness import examine_laws, find_roots
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.tree.held_speeds import holds_speed
+from heuncli.multibody.tree.layout import Layout, places_of_rates
+from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.results.results import Array, Status
 from heuncli.study.model.counts_and_lists import MOST_NAMES, count, some
 from heuncli.study.model.other_pose import other_pose
-from heuncli.tree.held_speeds import holds_speed
-from heuncli.tree.layout import Layout, places_of_rates
-from heuncli.tree.prepare import PreparedScene
 
 
 @record

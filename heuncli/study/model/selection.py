@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from heuncli.records import record
-from heuncli.results import CertainSum
-from heuncli.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, names_shares, report_of
-from heuncli.spec.models import ResultCondition, Spec, WatchedCondition
+from heuncli.base.records import record
+from heuncli.results.results import CertainSum
+from heuncli.results.results_schema import REPORT_OF, REPORTS, SHARES, leading_key, names_shares, report_of
+from heuncli.scene.file_format.models import ResultCondition, Spec, WatchedCondition
 
 EntryKeys = tuple[str, ...]
 WRENCH = ("about", "force", "moment")

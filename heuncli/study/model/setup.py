@@ -7,35 +7,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.coupled_start.prepared import prepare_coupled
-from heuncli.errors import SolveError
-from heuncli.integration.determined_motion import NOT_DETERMINED, determined
-from heuncli.integration.integrated_scene import smaller
-from heuncli.integration.methods.followed import FOLLOWED
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.runner import Runner, ready
-from heuncli.mechanism.build import build, forms_of
-from heuncli.mechanism.couplings import Coupling
-from heuncli.mechanism.model import Mechanism
-from heuncli.method_rows import AUTO
-from heuncli.records import record, replace
-from heuncli.reduction import compose as reduction
-from heuncli.reduction.model import Reduced
-from heuncli.redundancy.count import redundancy
-from heuncli.results import Array, Block
-from heuncli.spec.couplings import Rope
-from heuncli.spec.models import Spec
-from heuncli.stages import ANEW, Stages
+from heuncli.base import tolerances
+from heuncli.base.errors import SolveError
+from heuncli.base.method_rows import AUTO
+from heuncli.base.records import record, replace
+from heuncli.loads.redundancy.count import redundancy
+from heuncli.motion.integration.determined_motion import NOT_DETERMINED, determined
+from heuncli.motion.integration.integrated_scene import smaller
+from heuncli.motion.integration.methods.followed import FOLLOWED
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.runner import Runner, ready
+from heuncli.multibody.coupled_start.prepared import prepare_coupled
+from heuncli.multibody.mechanism.build import build, forms_of
+from heuncli.multibody.mechanism.couplings import Coupling
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.multibody.reduction import compose as reduction
+from heuncli.multibody.reduction.model import Reduced
+from heuncli.multibody.stages import ANEW, Stages
+from heuncli.multibody.tree.prepare import PreparedScene
+from heuncli.results.results import Array, Block
+from heuncli.scene.file_format.couplings import Rope
+from heuncli.scene.file_format.models import Spec
 from heuncli.study.model.method_choice import first_choice, why
 from heuncli.study.model.model_note import attitudes, model_note, reductions, rested
 from heuncli.study.model.selection import EVERYTHING, Selection
-from heuncli.tree.prepare import PreparedScene
 
 if TYPE_CHECKING:  # loaded where a scene has sections
-    from heuncli.kinetostatics.cuts import Cuts
-    from heuncli.redundancy.self_stress import KnownStress
+    from heuncli.loads.kinetostatics.cuts import Cuts
+    from heuncli.loads.redundancy.self_stress import KnownStress
     from heuncli.study.model.rest_pose import Rest
 
 
@@ -74,7 +74,7 @@ class Setup:
         """The axes, in body axes, about which bodies have a spin that nothing changes."""
         if not self.scene.layout.bodies["ball"].any():
             return {}
-        from heuncli.reduction.spins import spins_of  # only what hangs on balls, or on nothing, has such
+        from heuncli.multibody.reduction.spins import spins_of  # only what hangs on balls, or on nothing, has such
 
         return {i: spin.axis for i, spin in spins_of(self.scene).items()}
 
@@ -102,14 +102,14 @@ def set_up(
     require_drives(mechanism, spec.analysis.times[0] if spec.analysis.times else 0.0)
     prepared = prepare_coupled(mechanism, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0, stages)
     if any(drive.by_rate for drive in spec.drives.values()):
-        from heuncli.tree.driven_starts import require_lengths  # few scenes have them
+        from heuncli.multibody.tree.driven_starts import require_lengths  # few scenes have them
 
         require_lengths(prepared.mechanism, max(spec.analysis.times))
     if not reduce:  # what is declared planar is moved as in space, too
         prepared = replace(prepared, layout=replace(prepared.layout, flat=False))
     scene, runner = ready(prepared, stages)
     if scene.mechanism.rubbing and scene.layout.rows:
-        from heuncli.redundancy.rubbing import require_certain_start  # few scenes have such friction
+        from heuncli.loads.redundancy.rubbing import require_certain_start  # few scenes have such friction
 
         require_certain_start(scene, runner, spec.analysis.times[0] if spec.analysis.type == "state" else 0.0)
     if spec.analysis.type == "rest":
@@ -142,7 +142,7 @@ def require_drives(mechanism: Mechanism, t: float) -> None:
     """Raise SolveError for drives that begin with what is too large to be computed with: the assembly squares it."""
     jets = [law.value.derivatives(t) for law in mechanism.laws]
     if any(abs(value) > tolerances.MOST_MAGNITUDE for jet in jets for value in jet):
-        from heuncli.integration.diagnosis.domains import large_values  # only on the way to an error
+        from heuncli.motion.integration.diagnosis.domains import large_values  # only on the way to an error
 
         raise SolveError(*large_values(mechanism, t, {}))
 
@@ -203,6 +203,6 @@ def draw(spec: Spec, stages: Stages = ANEW) -> tuple[Mechanism, tuple[Cuts, ...]
     mechanism = build(spec, forms, stages)
     if not spec.sections:
         return mechanism, ()
-    from heuncli.kinetostatics.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
+    from heuncli.loads.kinetostatics.cuts import lay_cuts  # with the shapes 9 ms that other scenes do not need
 
     return mechanism, lay_cuts(mechanism, spec, forms)

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from heuncli.mechanism.model import Mechanism
-from heuncli.spec.couplings import Screw, ThreadFriction
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.scene.file_format.couplings import Screw, ThreadFriction
 
 LOCKED = "self-locking"
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.results import Array
+from heuncli.results.results import Array
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.in_time import EVENLY, UNSEEN
 from heuncli.study.search.turnings import NO_INSTANTS, SampledTurns, doubtful, resolved

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
-from heuncli.results import Array, Extremes, Place, Results
+from heuncli.results.results import Array, Extremes, Place, Results
 from heuncli.study.compose.recovery import HUNG_ON_RANK, Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search import extremes

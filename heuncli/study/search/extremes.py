@@ -14,10 +14,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.expressions.discontinuities import MOST_EQUAL
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Extremes, Indices, Mask, Results
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array, Extremes, Indices, Mask, Results
+from heuncli.scene.expressions.discontinuities import MOST_EQUAL
 from heuncli.study.search.intervals import FOURTH, Intervals, ceiling, completed, joined, promised
 
 ColumnsAt = Callable[[Array], Array]  # of sorted instants (n,) the quantities there, (n, n_columns)

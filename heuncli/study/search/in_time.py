@@ -14,10 +14,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.expressions.programs import Expression
-from heuncli.mechanism.model import Mechanism
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.results.results import Array
+from heuncli.scene.expressions.programs import Expression
 from heuncli.study.search.extremes import distinct
 from heuncli.study.search.turnings import SampledTurns, resolved
 

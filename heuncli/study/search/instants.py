@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.integration.segments import limits_of
-from heuncli.results import Array
-from heuncli.shapes.by_component import rows, squares
+from heuncli.motion.integration.segments import limits_of
+from heuncli.results.results import Array
+from heuncli.scene.shapes.by_component import rows, squares
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import distinct, finite
 from heuncli.study.solve.history import History, resample

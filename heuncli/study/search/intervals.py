@@ -17,8 +17,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Indices, Mask
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array, Indices, Mask
 
 DIFFERENCE = 0.5  # of what the two bends differ by, on top of the larger: for third derivatives that change sign
 FOURTH = 0.5  # of the bend: what the fourth derivative may add to it where four instants span a summit

@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.evaluator import Recovered
-from heuncli.named_tuples import NamedTuple
-from heuncli.redundancy.open_components import names_of, opened
-from heuncli.results import Array, Indices, Mask
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.loads.redundancy.open_components import names_of, opened
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.compose.blocks import blocks_asked_for
 from heuncli.study.compose.near_singular import leaves
 from heuncli.study.compose.recovery import Recovery

@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.joint_kinds import JOINTS
-from heuncli.kinetostatics.actions import whole_joint_actions
-from heuncli.kinetostatics.couplings import coupling_actions
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.loads.kinetostatics.actions import whole_joint_actions
+from heuncli.loads.kinetostatics.couplings import coupling_actions
+from heuncli.results.results import Array
 from heuncli.study.compose.recovery import Recovery
 from heuncli.study.model.setup import Setup
 from heuncli.study.search.extremes import distinct
@@ -46,7 +46,7 @@ def passages(recover: Callable[[Array], Recovery], grid: Array) -> Array:
 
 def on_pieces(recovery: Recovery) -> Array:
     """1 where a point that moves over a body lies on the piece of a single cut of it, else 0, (n_t, m)."""
-    from heuncli.kinetostatics.sections import attachments, on_piece
+    from heuncli.loads.kinetostatics.sections import attachments, on_piece
 
     actions = [*whole_joint_actions(recovery.joints), *recovery.applied, *coupling_actions(recovery.couplings)]
     columns = [

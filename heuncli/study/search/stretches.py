@@ -1,6 +1,6 @@
 """Extremes over runs of cuts: of the whole stretch, not of the cuts that were asked for.
 
-For a search the runs of a scene are looked at between their corners instead (kinetostatics/stretch.py). Of each
+For a search the runs of a scene are looked at between their corners instead (loads/kinetostatics/stretch.py). Of each
 quantity the highest and the lowest along the stretch are then two numbers over the instants, smooth but for kinks where
 the place leaps, which no extreme is at.
 """
@@ -11,11 +11,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached, spread_on
-from heuncli.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
-from heuncli.named_tuples import NamedTuple
-from heuncli.records import replace
-from heuncli.results import Array, Block, Extremes, Place
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import replace
+from heuncli.loads.kinetostatics.cuts import BEFORE, BEYOND, Cuts, attached, spread_on
+from heuncli.loads.kinetostatics.stretch import DEGREE, Stretch, laid, stretch_of, summits
+from heuncli.results.results import Array, Block, Extremes, Place
 from heuncli.study.model.setup import Setup
 
 HALVED = 2  # how often pieces are halved for what bends where loads change their sign: stresses, reduction lines

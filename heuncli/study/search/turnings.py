@@ -14,9 +14,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Indices, Mask
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array, Indices, Mask
 from heuncli.study.search.extremes import (
     BOTH,
     GOOD_ENOUGH,

@@ -7,14 +7,14 @@ from functools import cached_property
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import AppliedLoad
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.foundation import inertia_rows
-from heuncli.mechanism.model import RopeLoad
-from heuncli.results import Array
-from heuncli.shapes.by_component import instants_first, largest, rows, squares
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.actions import AppliedLoad
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.foundation import inertia_rows
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.model import RopeLoad
+from heuncli.results.results import Array
+from heuncli.scene.shapes.by_component import instants_first, largest, rows, squares
 from heuncli.study.model.setup import Setup
 
 

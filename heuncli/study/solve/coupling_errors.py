@@ -10,12 +10,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from heuncli.kinetostatics.actions import Action
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.coupling_numbers import numbers_of
-from heuncli.kinetostatics.couplings import CouplingLoads
-from heuncli.mechanism.model import Joint
-from heuncli.results import Array
+from heuncli.loads.kinetostatics.actions import Action
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.coupling_numbers import numbers_of
+from heuncli.loads.kinetostatics.couplings import CouplingLoads
+from heuncli.multibody.mechanism.model import Joint
+from heuncli.results.results import Array
 
 
 def told_of(
@@ -38,12 +38,12 @@ def numbers(loads: CouplingLoads, joints: Sequence[Joint], states: BodyStates) -
         found.setdefault("moment" if number.is_moment else "force", []).append(number.values)
     given = loads.coupling.given
     if given.type in ("gear", "screw", "belt"):
-        from heuncli.kinetostatics.drives_told import TOLD  # few scenes have them
+        from heuncli.loads.kinetostatics.drives_told import TOLD  # few scenes have them
 
         for name, values in TOLD[given.type](given, loads.carried, struck=False).items():
             found.setdefault("moment" if name == "torque" else "force", []).append(values)
     if given.type == "cam":
-        from heuncli.kinetostatics.cams import pressure_angle  # few scenes have them
+        from heuncli.loads.kinetostatics.cams import pressure_angle  # few scenes have them
 
         found["angle"] = [pressure_angle(loads, joints, states)]
     return found

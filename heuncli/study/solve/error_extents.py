@@ -6,10 +6,10 @@ from functools import reduce
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Mask
-from heuncli.shapes.by_component import rows
+from heuncli.base import tolerances
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Array, Mask
+from heuncli.scene.shapes.by_component import rows
 
 
 class Weights(NamedTuple):

@@ -12,35 +12,35 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import LimitError, Problem, SolveError
-from heuncli.expressions.discontinuities import one_sided_limits
-from heuncli.integration.check.distance import Marks, motion_error
-from heuncli.integration.check.estimate import CheckedRun, checked_run, recovered_at
-from heuncli.integration.check.instants import interleaved
-from heuncli.integration.check.runs import Runs, moved_start
-from heuncli.integration.check.singular_poses import singular_poses
-from heuncli.integration.contacts.blows import Jump
-from heuncli.integration.diagnosis.solvability import Wording, require_start
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.methods.method import Method
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.errors import Eventful, Stiff
-from heuncli.integration.run.interruptions import at_once
-from heuncli.integration.run.runner import Runner
-from heuncli.integration.segments import discontinuities_of
-from heuncli.integration.trajectory import Trajectory
-from heuncli.mechanism.model import BushingLoad, PairLoad
-from heuncli.method_rows import AUTO
-from heuncli.records import record, replace
-from heuncli.results import Array, Estimate
+from heuncli.base import tolerances
+from heuncli.base.errors import LimitError, Problem, SolveError
+from heuncli.base.method_rows import AUTO
+from heuncli.base.records import record, replace
+from heuncli.motion.integration.check.distance import Marks, motion_error
+from heuncli.motion.integration.check.estimate import CheckedRun, checked_run, recovered_at
+from heuncli.motion.integration.check.instants import interleaved
+from heuncli.motion.integration.check.runs import Runs, moved_start
+from heuncli.motion.integration.check.singular_poses import singular_poses
+from heuncli.motion.integration.contacts.blows import Jump
+from heuncli.motion.integration.diagnosis.solvability import Wording, require_start
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.methods.method import Method
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.errors import Eventful, Stiff
+from heuncli.motion.integration.run.interruptions import at_once
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.motion.integration.segments import discontinuities_of
+from heuncli.motion.integration.trajectory import Trajectory
+from heuncli.multibody.mechanism.model import BushingLoad, PairLoad
+from heuncli.results.results import Array, Estimate
+from heuncli.scene.expressions.discontinuities import one_sided_limits
 from heuncli.study.model.memory_estimate import Room, require_room_for_steps
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.load_errors import LoadErrors, SeenInstants
 from heuncli.study.solve.singular_start import require_motion
 
 if TYPE_CHECKING:  # loaded where there are conditions
-    from heuncli.integration.check.changes import Changes
+    from heuncli.motion.integration.check.changes import Changes
 
 
 @record
@@ -178,7 +178,7 @@ def checked_between_events(runs: Runs, setup: Setup, tolerance: float, by_cause:
     try:
         return checked_run(runs, tolerance, LoadErrors(setup, by_cause))
     except Eventful as left:
-        from heuncli.integration.check.fewer_stages import try_fewer_stages  # few scenes have so many
+        from heuncli.motion.integration.check.fewer_stages import try_fewer_stages  # few scenes have so many
 
         runs.eventful = try_fewer_stages(runs, left)
         return begun_anew(runs, left, method, setup, tolerance, by_cause)
@@ -243,7 +243,7 @@ def held(runner: Runner, t: float, state: Array) -> Array:
     """The contacts that are closed at a state, (contacts,)."""
     if not runner.layout.contacts:
         return np.zeros(0)
-    from heuncli.integration.contacts.contact_events import held_at  # few scenes have them
+    from heuncli.motion.integration.contacts.contact_events import held_at  # few scenes have them
 
     return held_at(runner, t, state)
 
@@ -251,7 +251,7 @@ def held(runner: Runner, t: float, state: Array) -> Array:
 def require_followed(runner: Runner, run: Trajectory) -> None:
     """Raise SolveError where drives of one loop contradict each other within the run."""
     if len(runner.layout.mechanism.laws) > 1 and runner.layout.rows:
-        from heuncli.integration.check.contradictions import unfollowed  # few scenes need it
+        from heuncli.motion.integration.check.contradictions import unfollowed  # few scenes need it
 
         problem = unfollowed(runner, run)
         if problem is not None:
@@ -264,13 +264,13 @@ def require_apart(runner: Runner, checked: CheckedRun) -> None:
     Or where a bushing passes half a turn.
     """
     if any(isinstance(load, PairLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.integration.check.meeting_points import comes_together  # few scenes have them
+        from heuncli.motion.integration.check.meeting_points import comes_together  # few scenes have them
 
         problem = comes_together(runner, checked.run, checked.horizon)
         if problem is not None:
             raise SolveError(problem)
     if any(isinstance(load, BushingLoad) for load in runner.layout.mechanism.loads):
-        from heuncli.integration.check.turned_over import turns_over
+        from heuncli.motion.integration.check.turned_over import turns_over
 
         if (problem := turns_over(runner, checked.run, checked.horizon)) is not None:
             raise SolveError(problem)

@@ -16,23 +16,23 @@ from functools import cached_property, reduce
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.diagnosis.off_sheaves import require_on_sheaves
-from heuncli.integration.evaluator import Recovered
-from heuncli.joint_kinds import JOINTS
-from heuncli.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
-from heuncli.kinetostatics.bodies import BodyStates, CarriedStates, body_states
-from heuncli.kinetostatics.coordinates import coordinates
-from heuncli.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
-from heuncli.kinetostatics.energy import energy
-from heuncli.kinetostatics.foundation import central_axis, total
-from heuncli.kinetostatics.joint_axes import in_axes
-from heuncli.kinetostatics.reactions import JointLoads, in_plane, joint_loads
-from heuncli.mechanism.size import marks
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array, Estimate, Mask
-from heuncli.results_schema import BLOWS, BY_CAUSE, TRAVELS
-from heuncli.shapes.rotations import cross_rows
+from heuncli.base import tolerances
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.loads.kinetostatics.actions import Action, AppliedLoad, applied_loads, joint_actions, whole_joint_actions
+from heuncli.loads.kinetostatics.bodies import BodyStates, CarriedStates, body_states
+from heuncli.loads.kinetostatics.coordinates import coordinates
+from heuncli.loads.kinetostatics.couplings import coupling_actions, coupling_loads, rope_actions
+from heuncli.loads.kinetostatics.energy import energy
+from heuncli.loads.kinetostatics.foundation import central_axis, total
+from heuncli.loads.kinetostatics.joint_axes import in_axes
+from heuncli.loads.kinetostatics.reactions import JointLoads, in_plane, joint_loads
+from heuncli.motion.integration.diagnosis.off_sheaves import require_on_sheaves
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.multibody.mechanism.size import marks
+from heuncli.results.results import Array, Estimate, Mask
+from heuncli.results.results_schema import BLOWS, BY_CAUSE, TRAVELS
+from heuncli.scene.shapes.rotations import cross_rows
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 from heuncli.study.solve.error_extents import ESTIMATED, Extent, Weights, lengths, norms, relative
@@ -130,7 +130,7 @@ class LoadErrors:
         couplings = coupling_loads(self.setup.scene.layout, several, states)
         coupled = coupling_actions(couplings)
         if couplings:
-            from heuncli.kinetostatics.flanks import with_flanks  # few scenes have gears
+            from heuncli.loads.kinetostatics.flanks import with_flanks  # few scenes have gears
 
             joints = with_flanks(self.setup.scene.layout, joints, couplings)
         acting = [*applied, *coupled]
@@ -270,7 +270,7 @@ class LoadErrors:
 
     def add_sections(self, states: BodyStates, actions: Sequence[Action], terms: BalanceTerms) -> None:
         """The cuts' loads in body axes, and how far the bodies themselves have turned between the two runs."""
-        from heuncli.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
+        from heuncli.loads.kinetostatics.sections import acceleration_matrix, attachments, piece_loads  # as in recover
 
         gravity = self.setup.scene.mechanism.gravity
         for cuts in self.setup.cuts:

@@ -11,12 +11,12 @@ from functools import reduce
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.energy import system_vector
-from heuncli.kinetostatics.momentum import momenta
-from heuncli.mechanism.model import Mechanism
-from heuncli.results import Array
+from heuncli.base import tolerances
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.energy import system_vector
+from heuncli.loads.kinetostatics.momentum import momenta
+from heuncli.multibody.mechanism.model import Mechanism
+from heuncli.results.results import Array
 from heuncli.study.solve.error_extents import norms
 
 TOLD = ("motion", "attitudes", "rodrigues")  # kinds of errors of a motion

@@ -10,16 +10,16 @@ from collections.abc import Iterator, Sequence, Set
 
 import numpy as np
 
-from heuncli.integration.evaluator import Recovered
-from heuncli.kinetostatics.actions import Action
-from heuncli.kinetostatics.bodies import BodyStates
-from heuncli.kinetostatics.coupling_numbers import numbers_of
-from heuncli.kinetostatics.couplings import CouplingLoads
-from heuncli.kinetostatics.joint_axes import in_axes
-from heuncli.kinetostatics.reactions import JointLoads
-from heuncli.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
-from heuncli.named_tuples import NamedTuple
-from heuncli.results import Array
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.loads.kinetostatics.actions import Action
+from heuncli.loads.kinetostatics.bodies import BodyStates
+from heuncli.loads.kinetostatics.coupling_numbers import numbers_of
+from heuncli.loads.kinetostatics.couplings import CouplingLoads
+from heuncli.loads.kinetostatics.joint_axes import in_axes
+from heuncli.loads.kinetostatics.reactions import JointLoads
+from heuncli.loads.kinetostatics.shares import Column, Shares, foundation_shares, members_of, shares_of
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.results.results import Array
 from heuncli.study.model.setup import Setup
 from heuncli.study.solve.balance_terms import BalanceTerms
 
@@ -106,7 +106,7 @@ def of_sections(setup: Setup, states: BodyStates, shares: Shares) -> OfKind:
     found: OfKind = []
     if not setup.cuts:
         return found
-    from heuncli.kinetostatics.section_shares import section_shares  # where there are sections
+    from heuncli.loads.kinetostatics.section_shares import section_shares  # where there are sections
 
     for cuts in setup.cuts:
         block = section_shares(cuts, setup.scene.layout, states, shares, {})

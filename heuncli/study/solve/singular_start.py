@@ -12,15 +12,15 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import Problem, SolveError
-from heuncli.integration.evaluator import Recovered
-from heuncli.integration.run.runner import Runner
-from heuncli.kinetostatics.bodies import BodyStates, body_states
-from heuncli.kinetostatics.reactions import Named
-from heuncli.records import replace
-from heuncli.results import Array
-from heuncli.tree.layout import Island, Layout, places_of_rates
+from heuncli.base import tolerances
+from heuncli.base.errors import Problem, SolveError
+from heuncli.base.records import replace
+from heuncli.loads.kinetostatics.bodies import BodyStates, body_states
+from heuncli.loads.kinetostatics.reactions import Named
+from heuncli.motion.integration.evaluator import Recovered
+from heuncli.motion.integration.run.runner import Runner
+from heuncli.multibody.tree.layout import Island, Layout, places_of_rates
+from heuncli.results.results import Array
 
 
 def require_motion(layout: Layout, recovered: Recovered) -> None:

@@ -53,7 +53,7 @@ def bars(name: str) -> list[Bar]:
     if DRAWN in os.environ:
         drawn = json.loads(Path(os.environ[DRAWN]).read_text(encoding="utf-8"))[name]
         return [Bar(bar[0], bar[1], *(np.array(x) for x in bar[2:])) for bar in drawn]
-    from heuncli.spec.load import load
+    from heuncli.scene.file_format.load import load
     from heuncli.study.model.setup import set_up
 
     scene = set_up(load(str(FOLDER / f"{name}.yaml")), reduce=False).scene

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.integration.methods.registry import method_of
-from heuncli.integration.run.request import MotionTask
-from heuncli.spec.load import load
+from heuncli.motion.integration.methods.registry import method_of
+from heuncli.motion.integration.run.request import MotionTask
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from heuncli.version import VERSION
 from tests.bench.peers.scenes import FOLDER, duration

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.commands.charting.reference import judged_instants
-from heuncli.commands.charting.results import COMPLETED, ChartedRun, ChartRow, with_front
-from heuncli.integration.check.runs import shared_steps
-from heuncli.integration.run.pace import hopeless
-from heuncli.report.labels import labels_of
-from heuncli.report.page import page_of
+from heuncli.analyses.charting.reference import judged_instants
+from heuncli.analyses.charting.results import COMPLETED, ChartedRun, ChartRow, with_front
+from heuncli.motion.integration.check.runs import shared_steps
+from heuncli.motion.integration.run.pace import hopeless
+from heuncli.output.tables.page import page_of
 from heuncli.study.ask.smoothed_friction import friction_warning
+from heuncli.study.quantities.labels import labels_of
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import bar, read
 from tests.shared.scenes import near, study

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, solved
 

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from heuncli.commands.probing.growth import told
-from heuncli.commands.probing.numerics.shadows import Growth
-from heuncli.commands.probing.study import probe
-from heuncli.spec.load import load
+from heuncli.analyses.probing.growth import told
+from heuncli.analyses.probing.numerics.shadows import Growth
+from heuncli.analyses.probing.study import probe
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.options import Options
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from heuncli import tolerances
-from heuncli.integration.contacts.complementarity import complementary
-from heuncli.integration.contacts.resting import short_flights
-from heuncli.integration.contacts.restitution import strikes
-from heuncli.integration.contacts.sequential_impacts import independent
-from heuncli.integration.contacts.touching import Touching, answerable
+from heuncli.base import tolerances
+from heuncli.motion.integration.contacts.complementarity import complementary
+from heuncli.motion.integration.contacts.resting import short_flights
+from heuncli.motion.integration.contacts.restitution import strikes
+from heuncli.motion.integration.contacts.sequential_impacts import independent
+from heuncli.motion.integration.contacts.touching import Touching, answerable
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, study
 

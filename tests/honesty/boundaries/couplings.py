@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from heuncli.errors import HeunError
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError
+from heuncli.scene.file_format.load import load
 from heuncli.study.workflow import solve
 from tests.honesty.boundaries.part import Part, Row
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.integration.contacts.resting import short_flights
-from heuncli.integration.contacts.touching import Touching
+from heuncli.base import tolerances
+from heuncli.motion.integration.contacts.resting import short_flights
+from heuncli.motion.integration.contacts.touching import Touching
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.pushed_block import pushed_block
 from tests.shared.scenes import near, study

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import BAR_SIZE, WEIGHT, bar, four_bar, read, verdict
 from tests.shared.scenes import near, study

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.commands.lagrange.coordinates import require_telling
-from heuncli.commands.lagrange.state_space import beside_rounding
-from heuncli.errors import SolveError
-from heuncli.kinetostatics.attitudes import rodrigues
+from heuncli.analyses.lagrange.coordinates import require_telling
+from heuncli.analyses.lagrange.state_space import beside_rounding
+from heuncli.base.errors import SolveError
+from heuncli.loads.kinetostatics.attitudes import rodrigues
 from tests.honesty.boundaries.part import Part, Row
 
 

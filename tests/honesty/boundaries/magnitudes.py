@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from heuncli.errors import HeunError
+from heuncli.base.errors import HeunError
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, solved
 

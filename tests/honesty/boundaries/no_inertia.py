@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import BAR_SIZE, WEIGHT, bar, verdict
 from tests.shared.scenes import near, solved

@@ -6,8 +6,8 @@ from typing import Any
 
 import numpy as np
 
-from heuncli.kinetostatics.energy import energy_drift
-from heuncli.kinetostatics.foundation import central_axis
+from heuncli.loads.kinetostatics.energy import energy_drift
+from heuncli.loads.kinetostatics.foundation import central_axis
 from heuncli.study.compose.warnings import unbalanced
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from heuncli.redundancy.certain_sums import relations, tidy
-from heuncli.redundancy.turning_sums import dependent_components, factors
+from heuncli.loads.redundancy.certain_sums import relations, tidy
+from heuncli.loads.redundancy.turning_sums import dependent_components, factors
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT
 from tests.shared.scenes import near, solved

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from heuncli.balancing.asked import BalanceOptions
-from heuncli.balancing.study import balance
-from heuncli.balancing.verdicts import verdict_of
-from heuncli.errors import SolveError
-from heuncli.spec.load import load
+from heuncli.analyses.balancing.asked import BalanceOptions
+from heuncli.analyses.balancing.study import balance
+from heuncli.analyses.balancing.verdicts import verdict_of
+from heuncli.base.errors import SolveError
+from heuncli.scene.file_format.load import load
 from tests.honesty.boundaries.part import Part, Row
 
 PERIOD = 0.5

@@ -6,15 +6,15 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from heuncli import tolerances
-from heuncli.errors import HeunError
-from heuncli.linearisation.indifference import Indifference, Loose, indifference
-from heuncli.linearisation.linearise import linearised
-from heuncli.linearisation.oscillations import Mode, oscillations
-from heuncli.linearisation.reduced_equations import ReducedEquations
-from heuncli.linearisation.steady_motion import off_balance
-from heuncli.oscillations.study import modes
-from heuncli.spec.load import load
+from heuncli.analyses.modes.study import modes
+from heuncli.base import tolerances
+from heuncli.base.errors import HeunError
+from heuncli.motion.linearisation.indifference import Indifference, Loose, indifference
+from heuncli.motion.linearisation.linearise import linearised
+from heuncli.motion.linearisation.oscillations import Mode, oscillations
+from heuncli.motion.linearisation.reduced_equations import ReducedEquations
+from heuncli.motion.linearisation.steady_motion import off_balance
+from heuncli.scene.file_format.load import load
 from heuncli.study.model.setup import set_up
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, solved

@@ -27,7 +27,7 @@ class Row(NamedTuple):
 
 
 class Part(NamedTuple):
-    """The thresholds under some headings of heuncli/tolerances.py ("kernel: " before those of the kernel's table).
+    """The thresholds under some headings of heuncli/base/tolerances.py ("kernel: " before those of the kernel's table).
 
     exempt: thresholds that decide no verdict, and why: on either side the same numbers, to their digits.
     wanted: thresholds that decide the verdict that is named here, and have no scene at their boundary yet.

@@ -7,19 +7,19 @@ import math
 
 import numpy as np
 
-from heuncli.page.frames import frames_of
-from heuncli.pictures.courses import varies
-from heuncli.pictures.planes import plane_of, plane_seen_along
-from heuncli.pictures.polar_words import notes_of
-from heuncli.pictures.pulls import pulls_of
-from heuncli.pictures.refusals import NotDrawable
-from heuncli.pictures.scenes import poses_of, standing
-from heuncli.pictures.tips import Largest, TipCurve
-from heuncli.pictures.turning import TurnedVectors, TurningRun, turning_of
-from heuncli.report.table_units import Units
-from heuncli.results import Array
+from heuncli.base.tolerances import EPS
+from heuncli.output.figures.courses import varies
+from heuncli.output.figures.planes import plane_of, plane_seen_along
+from heuncli.output.figures.polar_words import notes_of
+from heuncli.output.figures.pulls import pulls_of
+from heuncli.output.figures.refusals import NotDrawable
+from heuncli.output.figures.scenes import poses_of, standing
+from heuncli.output.figures.tips import Largest, TipCurve
+from heuncli.output.figures.turning import TurnedVectors, TurningRun, turning_of
+from heuncli.output.web_page.frames import frames_of
+from heuncli.results.results import Array
 from heuncli.study.ask.study import Study
-from heuncli.tolerances import EPS
+from heuncli.study.quantities.table_units import Units
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar
 from tests.shared.scenes import near, study

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from heuncli.results import Results
+from heuncli.results.results import Results
 from heuncli.study.compose.near_singular import AMPLE, error, reached
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, four_bar, verdict

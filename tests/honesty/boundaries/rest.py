@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from heuncli import tolerances
-from heuncli.errors import SolveError
+from heuncli.base import tolerances
+from heuncli.base.errors import SolveError
 from tests.honesty.boundaries.part import Part, Row
 from tests.shared.scenes import near, solved
 

@@ -6,15 +6,15 @@ import math
 
 import numpy as np
 
-from heuncli.cut_rows import rows_at
-from heuncli.errors import Finding
-from heuncli.kinetostatics.auto_properties import Cutting, joined, properties_of
-from heuncli.kinetostatics.section_axes import nearest_axis
-from heuncli.meshes.reading import mesh_of
-from heuncli.results import Results
-from heuncli.shapes.figure_kinds import Rectangle
-from heuncli.shapes.forms import Form, form
-from heuncli.spec.models import Shape
+from heuncli.base.errors import Finding
+from heuncli.loads.kinetostatics.auto_properties import Cutting, joined, properties_of
+from heuncli.loads.kinetostatics.section_axes import nearest_axis
+from heuncli.results.cut_rows import rows_at
+from heuncli.results.results import Results
+from heuncli.scene.file_format.models import Shape
+from heuncli.scene.meshes.reading import mesh_of
+from heuncli.scene.shapes.figure_kinds import Rectangle
+from heuncli.scene.shapes.forms import Form, form
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read, verdict
 from tests.shared import triangles

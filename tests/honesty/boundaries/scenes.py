@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from heuncli.errors import HeunError
-from heuncli.results import Results
-from heuncli.spec.load import load
+from heuncli.base.errors import HeunError
+from heuncli.results.results import Results
+from heuncli.scene.file_format.load import load
 from tests.shared.scenes import solved
 
 

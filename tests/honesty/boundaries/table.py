@@ -1,4 +1,4 @@
-"""All thresholds, part by part: a part is a file that is named for its headings in heuncli/tolerances.py."""
+"""All thresholds, part by part: a part is a file that is named for its headings in heuncli/base/tolerances.py."""
 
 from __future__ import annotations
 

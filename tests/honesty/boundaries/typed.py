@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from heuncli.errors import HeunError
-from heuncli.mechanism.build import build
-from heuncli.mechanism.model import Stop
-from heuncli.records import replace
-from heuncli.spec.load import load
-from heuncli.spec.turns import of_matrix
+from heuncli.base.errors import HeunError
+from heuncli.base.records import replace
+from heuncli.multibody.mechanism.build import build
+from heuncli.multibody.mechanism.model import Stop
+from heuncli.multibody.tree.prepare import prepare
+from heuncli.scene.file_format.load import load
+from heuncli.scene.file_format.turns import of_matrix
 from heuncli.study.ask.expectations import compare
-from heuncli.tree.prepare import prepare
 from tests.honesty.boundaries.part import Part, Row
 from tests.honesty.boundaries.scenes import WEIGHT, bar, read
 from tests.shared.scenes import near, study

@@ -1,0 +1,35 @@
+"""What is measured along an angle and along a length: the SI units of Lagrange's quantities, a row each."""
+
+from __future__ import annotations
+
+from heuncli.base.joint_kinds import is_length
+from heuncli.base.named_tuples import NamedTuple
+
+
+class CoordinateUnits(NamedTuple):
+    """The units of a coordinate q, its rate and acceleration, and of what belongs to it.
+
+    force: of k, C and drives; momentum: of p and h; inertia: of its entry on the diagonal of the mass matrix.
+    """
+
+    value: str
+    rate: str
+    acceleration: str
+    force: str
+    momentum: str
+    inertia: str
+
+    @property
+    def slope(self) -> str:
+        """Of the inertia's slope over the coordinate."""
+        return f"{self.inertia}/{self.value}"
+
+
+ANGLE = CoordinateUnits("rad", "rad/s", "rad/s²", "N·m", "N·m·s", "kg·m²")
+LENGTH = CoordinateUnits("m", "m/s", "m/s²", "N", "N·s", "kg")
+MIXED = "kg·m"  # of an angle and a length
+
+
+def units_of(coordinate: str) -> CoordinateUnits:
+    """The units along a coordinate, owner.quantity."""
+    return LENGTH if is_length(coordinate) else ANGLE

@@ -1,0 +1,149 @@
+"""A mesh of solids, as Abaqus and CalculiX have it: read, and what masses spread evenly in it feel of a field.
+
+Of a tetrahedron with corners x_i, mass m, in a field a(x) linear in x, the forces
+
+    F_i = -int rho N_i a dV = -m/20 (a_i + sum_j a_j)
+at its corners have the force and the moment of the field exactly; other solids are tetrahedra side by side. So the
+nodal forces of a whole mesh do, and balance as the body does if the mesh weighs as much, at the same places.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from heuncli.base.errors import Finding
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.records import record
+from heuncli.results.results import Array
+from heuncli.scene.shapes.inertia import assembled, properties
+from heuncli.scene.shapes.rotations import cross_rows
+
+TETRAHEDRON = ((0, 1, 2, 3),)
+WEDGE = ((0, 1, 2, 3), (1, 4, 2, 3), (2, 4, 5, 3))
+HEXAHEDRON = tuple((0, 6, *edge) for edge in ((1, 2), (2, 3), (3, 7), (7, 4), (4, 5), (5, 1)))
+
+
+class SolidKind(NamedTuple):
+    """A kind of element: its nodes, the corners first, and the tetrahedra of corners that it is made of."""
+
+    nodes: int
+    parts: tuple[tuple[int, ...], ...]
+
+
+KINDS = {
+    "C3D4": SolidKind(4, TETRAHEDRON), "C3D10": SolidKind(10, TETRAHEDRON), "C3D6": SolidKind(6, WEDGE),
+    "C3D15": SolidKind(15, WEDGE), "C3D8": SolidKind(8, HEXAHEDRON), "C3D20": SolidKind(20, HEXAHEDRON),
+}  # fmt: skip
+VARIANTS = "RIHMT"  # letters behind a kind: of its integration
+ONLY_SOLIDS = "a mesh of solids alone: C3D4, C3D10, C3D6, C3D15, C3D8, C3D20"
+
+
+@record
+class SolidMesh:
+    """Nodes, their numbers (n,) and places (n, 3), and tetrahedra (k, 4) by the rows of their corners."""
+
+    numbers: NDArray[np.intp]
+    places: Array
+    tetrahedra: NDArray[np.intp]
+
+    def volumes(self) -> Array:
+        """Of the tetrahedra, (k,)."""
+        a, b, c, d = (self.places[self.tetrahedra[:, i]] for i in range(4))
+        return np.asarray(np.abs(np.sum((b - a) * cross_rows(c - a, d - a), axis=1)) / 6.0)
+
+    def nodal_forces(self, mass: float, u: Array) -> Array:
+        """What a mass spread evenly feels of the angular acceleration u about the origin, (n, 3)."""
+        V = self.volumes()
+        a = np.cross(u, self.places)[self.tetrahedra]
+        parts = -(mass / V.sum() * V / 20.0)[:, None, None] * (a + a.sum(axis=1, keepdims=True))
+        found = np.zeros_like(self.places)
+        for i in range(4):
+            np.add.at(found, self.tetrahedra[:, i], parts[:, i])
+        return found
+
+    def pseudo_inertia(self, mass: float) -> Array:
+        """P about the origin of a mass spread evenly, (4, 4)."""
+        V = self.volumes()
+        m = mass / V.sum() * V
+        x = self.places[self.tetrahedra]
+        S = x.sum(axis=1)
+        second = np.einsum("k,kia,kib->ab", m, x, x) + np.einsum("k,ka,kb->ab", m, S, S)
+        return assembled(np.array(mass), m @ S / 4.0, second / 20.0)
+
+    def center_and_inertia(self, mass: float) -> tuple[Array, Array]:
+        """Centre of mass (3,) and inertia about it (3, 3) of a mass spread evenly."""
+        return properties(self.pseudo_inertia(mass))[1:]
+
+
+def read_mesh(text: str, name: str) -> SolidMesh:
+    """The mesh in a deck's text; name: of the file. Raises Finding."""
+    nodes: dict[int, tuple[float, ...]] = {}
+    corners: list[tuple[int, ...]] = []
+    for keyword, kind, number, words in _data_lines(text, name):
+        where = f"{name}:{number}"
+        try:
+            if keyword == "*NODE":
+                x = [float(word) for word in words[1:4]]
+                nodes[int(words[0])] = (*x, *[0.0] * (3 - len(x)))
+                continue
+            own = [int(word) for word in words]
+        except ValueError:
+            raise Finding("bad-mesh", f"{where}: '{', '.join(words)[:60]}' are no numbers", ONLY_SOLIDS) from None
+        assert kind is not None
+        if len(own) != kind.nodes + 1:
+            message = f"{where}: an element of {kind.nodes} nodes has {len(own) - 1}"
+            raise Finding("bad-mesh", message, "its number, then its nodes; a line that ends with a comma goes on")
+        corners += [tuple(own[1 + i] for i in part) for part in kind.parts]
+    return _gathered(nodes, corners, name)
+
+
+def _data_lines(text: str, name: str) -> Iterator[tuple[str, SolidKind | None, int, list[str]]]:
+    """The lines below *NODE and *ELEMENT, elements in one however many lines they take: keyword, kind, line, words."""
+    keyword, kind, begun, gathered = "", None, 0, list[str]()
+    for number, line in enumerate(text.splitlines(), start=1):
+        if line.startswith("**") or not line.strip():
+            continue
+        if line.startswith("*"):
+            words = [word.strip().upper() for word in line.split(",")]
+            keyword, kind, gathered = words[0], None, []
+            if keyword == "*INCLUDE":
+                raise Finding("bad-mesh", f"{name}:{number}: another file is included", "name that file")
+            if keyword == "*ELEMENT":
+                kind = _kind(words, f"{name}:{number}")
+            continue
+        if keyword not in ("*NODE", "*ELEMENT"):
+            continue
+        begun = begun if gathered else number
+        gathered += [word.strip() for word in line.split(",") if word.strip()]
+        if keyword == "*NODE" or not line.rstrip().endswith(","):
+            yield keyword, kind, begun, gathered
+            gathered = []
+
+
+def _kind(words: Sequence[str], where: str) -> SolidKind:
+    """The kind of the elements below a line. Raises Finding."""
+    given = next((word.partition("=")[2].strip() for word in words if word.partition("=")[0].strip() == "TYPE"), "")
+    kind = KINDS.get(given.rstrip(VARIANTS) if given not in KINDS else given)
+    if kind is None:
+        raise Finding(
+            "bad-mesh", f"{where}: elements of type {given or 'none'} have a mass that is not known", ONLY_SOLIDS
+        )
+    return kind
+
+
+def _gathered(nodes: dict[int, tuple[float, ...]], corners: Sequence[tuple[int, ...]], name: str) -> SolidMesh:
+    if not corners:
+        raise Finding("bad-mesh", f"{name}: there are no elements", "*NODE and *ELEMENT, as in the mesh of the deck")
+    used = sorted({number for one in corners for number in one})
+    missing = next((number for number in used if number not in nodes), None)
+    if missing is not None:
+        raise Finding("bad-mesh", f"{name}: node {missing} of an element is not there", "*NODE before or behind it")
+    row = {number: i for i, number in enumerate(used)}
+    tetrahedra = np.array([[row[number] for number in one] for one in corners], dtype=np.intp)
+    found = SolidMesh(np.array(used, dtype=np.intp), np.array([nodes[number] for number in used]), tetrahedra)
+    if not (np.isfinite(found.places).all() and found.volumes().sum() > 0.0):
+        raise Finding("bad-mesh", f"{name}: the elements have no volume", "are the numbers of the nodes right?")
+    return found

@@ -1,0 +1,84 @@
+"""A measure held against a value: `max joints.main.force = 10 kN`, `max abs sections.web.M2 < 2*M`.
+
+A value is written as in a spec: with a unit of the measure's kind, in SI without one, or by parameters.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from typing import Literal
+
+from heuncli.analyses.variants.axes import AxisError, figure_of
+from heuncli.base.errors import Finding
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.base.units import parse_unit
+from heuncli.scene.file_format.models import Spec
+from heuncli.scene.file_format.quantity import Scope, number
+
+Sign = Literal["=", "<", ">", "<=", ">="]
+SPELLINGS: dict[str, Sign] = {
+    "=": "=", "==": "=", "<": "<", ">": ">", "<=": "<=", ">=": ">=", "≤": "<=", "≥": ">=", "=<": "<=", "=>": ">=",
+}  # fmt: skip
+PARTS = re.compile(r"([^<>=≤≥]*)([<>=≤≥]+)([^<>=≤≥]*)\Z", re.DOTALL)
+
+
+class MeasureCondition(NamedTuple):
+    """The words of a measure, the sign, and the value behind it as it is written."""
+
+    measure: str
+    sign: Sign
+    value: str
+
+    @property
+    def text(self) -> str:
+        """The whole of it."""
+        return f"{self.measure} {self.sign} {self.value}"
+
+    @property
+    def unit(self) -> str:
+        """The unit in which the value is given; empty where it has none, or is an expression."""
+        figure = figure_of(self.value)
+        return figure.unit if figure is not None else ""
+
+
+def condition_of(text: str, form: str, hint: str) -> MeasureCondition:
+    """What a text such as `max joints.main.force < 10 kN` says; form, hint: what is told where it is none.
+
+    Raises AxisError.
+    """
+    found = PARTS.match(text)
+    sign = SPELLINGS.get(found[2]) if found is not None else None
+    if found is None or sign is None:
+        raise AxisError(text, form, hint)
+    if not found[1].strip() or not found[3].strip():
+        what = "a measure before" if not found[1].strip() else "a value behind"
+        raise AxisError(text, f"{form}; there is not {what} the '{found[2]}'", hint)
+    if figure_of(found[1]) is not None:
+        raise AxisError(text, "the measure stands first", hint)
+    return MeasureCondition(found[1].strip(), sign, found[3].strip())
+
+
+def in_si(condition: MeasureCondition, unit: str, specs: Sequence[Spec], hint: str) -> float:
+    """The value of a condition in SI, the same in all specs; unit: the measure's own, empty where it is not known.
+
+    Raises AxisError.
+    """
+    dimension = parse_unit(unit)[1] if unit else None
+    values: set[float] = set()
+    for spec in specs:
+        try:
+            values.add(number(_plain(condition.value), dimension, Scope(spec.parameters)))
+        except Finding as finding:
+            raise AxisError(condition.text, finding.message, finding.hint or hint, finding.code) from None
+    if len(values) > 1:
+        raise AxisError(condition.text, f"the value '{condition.value}' hangs on what is varied", "give it as a number")
+    return values.pop()
+
+
+def _plain(text: str) -> float | str:
+    """A number where the text is one, for what a spec holds is no text then."""
+    try:
+        return float(text)
+    except ValueError:
+        return text

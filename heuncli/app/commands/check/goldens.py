@@ -1,0 +1,111 @@
+"""Where the golden file of a spec lies, and what stands there. Impure: reads folders and files.
+
+A spec found in a folder has its file at the same path below DIR, with `.json`. One that is named itself has it at the
+longest end of its path that is there, so that a hook which names single files finds those of the whole folder.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from pathlib import Path, PurePath
+
+from heuncli.app.cli.entry import UsageError
+from heuncli.app.commands.check.folders import Found
+from heuncli.app.commands.check.request import CheckRequest
+from heuncli.base.errors import Finding, HeunError, Problem, SourceLocation
+from heuncli.base.foreign_text import shown
+from heuncli.scene.file_format.reading import STANDARD_INPUT
+
+SUFFIX = ".json"
+NOT_SET = ("", "0", "false", "no")  # what CI may say where it is not meant
+
+
+class GoldenError(HeunError):
+    """A golden file that cannot be used."""
+
+    exit_code = 2
+
+
+def require_sense(request: CheckRequest) -> None:
+    """Raise UsageError where the options about golden files do not go together."""
+    if request.golden is None:
+        for word, given in (
+            ("--update", request.update), ("--strict", request.strict),
+            ("--golden-tolerance", request.golden_tolerance is not None),
+        ):  # fmt: skip
+            if given:
+                raise UsageError(Problem("bad-option", f"{word} without --golden", hint="such as --golden golden"))
+        return
+    if request.force and not request.update:
+        raise UsageError(
+            Problem("bad-option", "--force without --update", hint="it lets --update write where CI is set")
+        )
+    share = request.golden_tolerance
+    if share is not None and not 0.0 < share < 1.0:
+        hint = "such as 1e-6; without it the stated errors hold"
+        raise UsageError(Problem("bad-option", f"--golden-tolerance {share:g}: expected a share below 1", hint=hint))
+    if request.update and not request.force and os.environ.get("CI", "").lower() not in NOT_SET:
+        hint = "run it where the change is made, look at what changed, and commit the files; --force writes here, too"
+        raise UsageError(Problem("bad-option", "--update where CI is set: a pipeline would approve itself", hint=hint))
+    folder = Path(request.golden)
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(Problem("bad-option", f"--golden {request.golden}: this is no folder", hint="name a folder"))
+    if not folder.exists() and not request.update:
+        hint = "--update makes it, with the numbers of today"
+        raise UsageError(Problem("bad-option", f"--golden {request.golden}: there is no such folder", hint=hint))
+
+
+def files_of(found: Sequence[Found], folder: str) -> dict[str, str]:
+    """The golden files of specs, by the paths of these. Raises UsageError where two specs would have the same."""
+    files: dict[str, str] = {}
+    owners: dict[str, str] = {}
+    for one in found:
+        if one.path == STANDARD_INPUT:
+            raise UsageError(Problem("bad-option", "--golden with standard input: it has no path", hint="name a file"))
+        file = file_of(one, folder)
+        other = owners.setdefault(file, one.path)
+        if os.path.realpath(other) != os.path.realpath(one.path):
+            hint = "name the folder above both, or check one after the other with folders of their own"
+            raise UsageError(
+                Problem("bad-option", f"--golden: {other} and {one.path} would both have {file}", hint=hint)
+            )
+        files[one.path] = file
+    return files
+
+
+def file_of(one: Found, folder: str) -> str:
+    """The golden file of a spec."""
+    if one.below is not None:
+        return str(Path(folder, os.path.relpath(one.path, one.below)).with_suffix(SUFFIX))
+    parts = [part for part in PurePath(one.path).parts if part not in (os.curdir, os.pardir, os.sep)]
+    tails = [str(Path(folder, *parts[start:]).with_suffix(SUFFIX)) for start in range(len(parts))]
+    return next((tail for tail in tails if Path(tail).is_file()), tails[-1])
+
+
+def name_of(file: str, spec: str, folder: str) -> str:
+    """The path of a spec as its golden file names it: where the file lies below the folder, with the spec's ending."""
+    return PurePath(os.path.relpath(file, folder)).with_suffix(PurePath(spec).suffix).as_posix()
+
+
+def require_inside(file: str, folder: str) -> None:
+    """Raise GoldenError where a file is a link that leads out of the folder, or a folder itself."""
+    inside, real = os.path.realpath(folder), os.path.realpath(file)
+    if os.path.commonpath([inside, real]) != inside:
+        raise told(
+            file, Finding("not-golden", f"this leads out of {shown(folder)}: to {shown(real)}", "remove the link")
+        )
+    if Path(file).is_dir():
+        raise told(file, Finding("not-golden", "this is a folder", "remove it, or choose another place for --golden"))
+
+
+def told(file: str, finding: Finding) -> GoldenError:
+    """The error that says what is wrong with a file."""
+    return GoldenError(Problem(finding.code, finding.message, SourceLocation(file, 1, 1), finding.hint))
+
+
+def without_spec(folder: str, files: Iterable[str]) -> list[str]:
+    """The golden files below a folder that are of none of the specs, sorted."""
+    known = {os.path.realpath(file) for file in files}
+    found = (str(path) for path in sorted(Path(folder).rglob("*" + SUFFIX)) if path.is_file())
+    return [path for path in found if os.path.realpath(path) not in known]

@@ -1,0 +1,22 @@
+"""What `heun diff` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import OUTPUT, QUIET, TIME_LIMIT_EACH, Option
+from heuncli.base.named_tuples import NamedTuple
+
+FORMATS = ("table", "json", "markdown", "github")
+
+
+class DiffRequest(NamedTuple):
+    """What changed between two specs, golden files or results in JSON by more than both state."""
+
+    before: Annotated[
+        str, Option((), "A spec, a golden file, or a result of heun run --format json.", "A", completes="spec")
+    ]
+    after: Annotated[str, Option((), "The same of what it became.", "B", completes="spec")]
+    format: Annotated[str | None, Option(("--format",), "How to write it. Default: table.", "|".join(FORMATS))] = None
+    output: Annotated[str | None, OUTPUT] = None
+    exit_code: Annotated[bool, Option(("--exit-code",), "Leave with 1 if anything changed.")] = False
+    time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
+    quiet: Annotated[bool, QUIET] = False

@@ -1,0 +1,80 @@
+"""What `heun export` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import (
+    CASE,
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    SPEC,
+    STEP,
+    TIME_LIMIT,
+    TOLERANCE,
+    Option,
+)
+from heuncli.base.named_tuples import NamedTuple
+
+WHAT = ("loads",)
+FORMATS = ("csv", "json", "ansys", "nastran", "calculix", "abaqus")
+
+
+class ExportRequest(NamedTuple):
+    """Write the self-balanced load cases of a body for a stress analysis."""
+
+    what: Annotated[str, Option((), "What is written: loads.", "loads")]
+    spec: Annotated[str, SPEC]
+    body: Annotated[str | None, Option(("--body",), "The body. Default: the only one.", "NAME", completes="body")] = (
+        None
+    )
+    at: Annotated[
+        str | None,
+        Option(
+            ("--at",),
+            "When, a case each: a time, first, last, peak:PATH (the largest magnitude), max:PATH, min:PATH, "
+            "impulse:NAME or impulse:NUMBER. Default: the one instant of a state.",
+            "WHEN,...",
+        ),
+    ] = None
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else csv.", "|".join(FORMATS)),
+    ] = None
+    output: Annotated[
+        str | None,
+        Option(("--output", "-o"), "Write there, whole or not at all: .csv, .json, .bdf, .mac, .inp.", "FILE"),
+    ] = None
+    units: Annotated[
+        str | None,
+        Option(("--units",), "Force, length, mass that go together, such as N,mm,t. Default: N,m,kg.", "UNIT,..."),
+    ] = None
+    first_node: Annotated[
+        int | None, Option(("--first-node",), "The number of the first node of a deck. Default: 1001.", "NUMBER")
+    ] = None
+    elements: Annotated[
+        str | None,
+        Option(("--elements",), "The mesh's set of all elements of the body, in decks. Default: BODY.", "NAME"),
+    ] = None
+    mesh: Annotated[
+        str | None,
+        Option(
+            ("--mesh",),
+            "The mesh of the body, of solids, for CalculiX, whose nodes take the angular acceleration.",
+            "FILE",
+        ),
+    ] = None
+    blow_over: Annotated[
+        float | None,
+        Option(("--blow-over",), "Blows as the mean loads of so long a time; decks need it.", "SECONDS"),
+    ] = None
+    case: Annotated[str | None, CASE] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

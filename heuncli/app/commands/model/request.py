@@ -1,0 +1,24 @@
+"""What `heun model` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import CASE, NO_REDUCE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, VIEW, WIDTH, Option
+from heuncli.base.named_tuples import NamedTuple
+
+
+class ModelRequest(NamedTuple):
+    """Tell which model is made of a scene, and why."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[str | None, Option(("--format",), "How to write it. Default: text.", "text|json")] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    sketch: Annotated[bool, Option(("--sketch",), "Below it a drawing of the machine as assembled, in letters.")] = (
+        False
+    )
+    view: Annotated[str | None, VIEW] = None
+    width: Annotated[int | None, WIDTH] = None
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

@@ -1,0 +1,74 @@
+"""What `heun plot` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import (
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    STEP,
+    TIME_LIMIT,
+    TOLERANCE,
+    VIEW,
+    WIDTH,
+    WITHOUT,
+    Option,
+)
+from heuncli.base.named_tuples import NamedTuple
+
+
+class PlotRequest(NamedTuple):
+    """Draw loads and motion: over time, along a bar, as a polar diagram; the machine itself; a sweep, modes, orders."""
+
+    words: Annotated[
+        tuple[str, ...],
+        Option(
+            (),
+            "Specs, then one of: paths, such as joints.main.force (over time); sections.NAME (along the bar); "
+            "polar joints.NAME; scene; modes; balance. Or the store or CSV of a sweep.",
+            "SPEC... WHAT...",
+        ),
+    ]
+    output: Annotated[
+        str | None,
+        Option(
+            ("--output", "-o"),
+            "Draw it there: x.svg; .png and .pdf by matplotlib. Default: on the terminal.",
+            "FILE",
+        ),
+    ] = None
+    x: Annotated[
+        str | None, Option(("--x",), "Over this number in place of time, such as coordinates.shaft.angle.", "PATH")
+    ] = None
+    measured: Annotated[
+        tuple[str, ...],
+        Option(
+            ("--with",),
+            "Measured points over it: a CSV's columns, as t:F or t[ms]:2[kN]. May be repeated.",
+            "FILE:X:Y",
+        ),
+    ] = ()
+    at: Annotated[str | None, Option(("--at",), "When, of diagrams and scenes; as of heun export.", "WHEN,...")] = None
+    axes: Annotated[
+        str | None, Option(("--axes",), "Joint loads in the axes of the one or the other body.", "world|from|to")
+    ] = None
+    view: Annotated[str | None, VIEW] = None
+    tension_side: Annotated[bool, Option(("--tension-side",), "Bending moments on the side that is in tension.")] = (
+        False
+    )
+    without: Annotated[tuple[str, ...], WITHOUT] = ()
+    width: Annotated[int | None, WIDTH] = None
+    units: Annotated[str | None, Option(("--units",), "Units of the axes, such as kN,mm,deg,rpm.", "UNIT,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[
+        str | None, Option(("--case",), "In these load cases, over each other; all: in all.", "NAME,...|all")
+    ] = None
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

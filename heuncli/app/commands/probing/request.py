@@ -1,0 +1,21 @@
+"""What `heun probe` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import CASE, OUTPUT, QUIET, SET, SPEC, TIME_LIMIT, Option
+from heuncli.base.named_tuples import NamedTuple
+
+
+class ProbeRequest(NamedTuple):
+    """Where a motion comes near to what methods cannot bear, with a verdict."""
+
+    spec: Annotated[str, SPEC]
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else table.", "table|json"),
+    ] = None
+    output: Annotated[str | None, OUTPUT] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

@@ -1,0 +1,49 @@
+"""What `heun report` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import (
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    SPEC,
+    STEP,
+    TIME_LIMIT,
+    TOLERANCE,
+    Option,
+)
+from heuncli.base.named_tuples import NamedTuple
+
+FORMATS = ("html", "md")
+
+
+class ReportRequest(NamedTuple):
+    """Write a report for a client: loads, sections, checks, the machine, and how far all that can be trusted."""
+
+    spec: Annotated[str, SPEC]
+    output: Annotated[
+        str | None,
+        Option(("--output", "-o"), "Write it there, whole or not at all: x.html, x.md; - is standard output.", "FILE"),
+    ] = None
+    format: Annotated[
+        str | None,
+        Option(("--format",), "How to write it. Default: by the name's end of -o FILE, else html.", "|".join(FORMATS)),
+    ] = None
+    date: Annotated[str | None, Option(("--date",), "The date on its first page. Default: none.", "TEXT")] = None
+    author: Annotated[str | None, Option(("--author",), "Whose report it is.", "TEXT")] = None
+    project: Annotated[str | None, Option(("--project",), "Of what project.", "TEXT")] = None
+    case: Annotated[
+        str | None,
+        Option(("--case",), "Of these load cases alone. Default: of all.", "NAME,...", completes="case"),
+    ] = None
+    units: Annotated[str | None, Option(("--units",), "Units of loads, such as kN,mm,deg,rpm.", "UNIT,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

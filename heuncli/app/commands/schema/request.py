@@ -1,0 +1,13 @@
+"""What `heun schema` is asked for: its options."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import OUTPUT, Option
+from heuncli.base.named_tuples import NamedTuple
+
+
+class SchemaRequest(NamedTuple):
+    """Print the JSON Schema of specs, for editors."""
+
+    results: Annotated[bool, Option(("--results",), "That of the results of heun run --format json.")] = False
+    output: Annotated[str | None, OUTPUT] = None

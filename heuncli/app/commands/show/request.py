@@ -1,0 +1,44 @@
+"""What `heun show` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import (
+    CASE,
+    LEAST_NORM,
+    METHOD,
+    NO_REDUCE,
+    QUIET,
+    SET,
+    SPEC,
+    STEP,
+    TIME_LIMIT,
+    TOLERANCE,
+    Option,
+)
+from heuncli.base.named_tuples import NamedTuple
+
+
+class ShowRequest(NamedTuple):
+    """Show the machine as it moves, with its loads: one page for a browser, which needs nothing else."""
+
+    spec: Annotated[str, SPEC]
+    output: Annotated[
+        str | None,
+        Option(("--output", "-o"), "Write the page there: x.html; - for standard output.", "FILE"),
+    ] = None
+    glb: Annotated[
+        str | None, Option(("--glb",), "Write the moving bodies there, as animated glTF: x.glb.", "FILE")
+    ] = None
+    frames: Annotated[
+        int | None, Option(("--frames",), "At most so many instants in the page. Default: 600.", "NUMBER")
+    ] = None
+    units: Annotated[str | None, Option(("--units",), "Units of the page, such as kN,mm,deg,rpm.", "UNIT,...")] = None
+    set: Annotated[tuple[str, ...], SET] = ()
+    case: Annotated[str | None, CASE] = None
+    method: Annotated[str | None, METHOD] = None
+    step: Annotated[float | None, STEP] = None
+    tolerance: Annotated[float | None, TOLERANCE] = None
+    no_reduce: Annotated[bool, NO_REDUCE] = False
+    least_norm: Annotated[bool, LEAST_NORM] = False
+    time_limit: Annotated[float | None, TIME_LIMIT] = None
+    quiet: Annotated[bool, QUIET] = False

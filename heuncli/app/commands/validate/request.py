@@ -1,0 +1,14 @@
+"""What `heun validate` is asked for: its options and arguments."""
+
+from typing import Annotated
+
+from heuncli.app.cli.options import TIME_LIMIT_EACH, Option
+from heuncli.base.named_tuples import NamedTuple
+
+
+class ValidateRequest(NamedTuple):
+    """Read specs and report every error of every file."""
+
+    specs: Annotated[tuple[str, ...], Option((), "YAML files; - reads standard input.", "SPEC...", completes="spec")]
+    time_limit_each: Annotated[float | None, TIME_LIMIT_EACH] = None
+    quiet: Annotated[bool, Option(("--quiet", "-q"), "Nothing but errors.")] = False

@@ -1,0 +1,73 @@
+"""Arguments of Python of the wrong kind, refused by their names, all of a call at once.
+
+Truths are no numbers here, nor NumPy's arrays truths; what only resembles a kind (a list of texts with a number in it)
+is refused as well.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping
+from numbers import Integral, Real
+
+import numpy as np
+
+from heuncli.base.errors import Problem, UsageError
+from heuncli.base.named_tuples import NamedTuple
+
+
+class ArgumentKind(NamedTuple):
+    """What an argument may be: whether a value is of the kind, the kind in words, an example in Python."""
+
+    is_met: Callable[[object], bool]
+    words: str
+    example: str
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def _is_text_or_texts(value: object) -> bool:
+    if isinstance(value, str):
+        return True
+    is_series = isinstance(value, Iterable) and not isinstance(value, Mapping | bytes)
+    return is_series and iter(value) is not value and all(isinstance(each, str) for each in value)  # type: ignore[call-overload, attr-defined]
+
+
+def _is_number_or_numbers(value: object) -> bool:
+    if _is_number(value):
+        return True
+    if isinstance(value, str | bytes | Mapping) or not isinstance(value, Iterable):
+        return False
+    try:
+        array = np.asarray(value)
+    except ValueError:  # of several lengths
+        return False
+    return array.size == 0 or array.dtype.kind in "iuf"
+
+
+TEXT = ArgumentKind(lambda value: isinstance(value, str), "a text", "'...'")
+TEXTS = ArgumentKind(_is_text_or_texts, "a text or a list of texts", "['joints', 'energy']")
+NUMBER = ArgumentKind(_is_number, "a number", "0.5")
+WHOLE = ArgumentKind(lambda value: isinstance(value, Integral) and _is_number(value), "a whole number", "10")
+NUMBERS = ArgumentKind(_is_number_or_numbers, "a number or an array of numbers", "[0.1, 0.2]")
+NUMBER_OR_TEXT = ArgumentKind(lambda value: isinstance(value, str) or _is_number(value), "a number or a text", "0.5")
+TRUTH = ArgumentKind(lambda value: isinstance(value, bool | np.bool_), "True or False", "True")
+MAPPING = ArgumentKind(lambda value: isinstance(value, Mapping), "a mapping", "{'bodies.rod.mass': 2}")
+FILE = ArgumentKind(lambda value: isinstance(value, str | os.PathLike), "the name of a file", "'results.json'")
+
+
+def check_arguments(*arguments: tuple[str, object, ArgumentKind], optional: bool = True) -> None:
+    """Refuse arguments (name, value, kind) of the wrong kind. optional: None means that one is not given.
+
+    Raises UsageError with a problem for each of them.
+    """
+    problems = []
+    for name, value, kind in arguments:
+        if (value is None and optional) or kind.is_met(value):
+            continue
+        message = f"{name}: expected {kind.words}, found {type(value).__name__}"
+        problems.append(Problem("bad-option", message, hint=f"such as {name}={kind.example}"))
+    if problems:
+        raise UsageError(*problems)

@@ -1,0 +1,35 @@
+"""The range of magnitudes that is computed with; why it is that range stands at its bounds in tolerances.py."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Finding
+
+if TYPE_CHECKING:
+    from heuncli.results.results import Array, Mask
+
+ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
+TOO_SMALL = "look at its unit; what is meant to be nothing is written 0"
+TOO_LARGE = "look at its unit; what has no bound is left out"
+
+
+def is_in_range(value: float) -> bool:
+    """Whether a number is 0, or of a magnitude that is computed with; nan and inf are not."""
+    return value == 0.0 or tolerances.LEAST_MAGNITUDE <= abs(value) <= tolerances.MOST_MAGNITUDE
+
+
+def are_in_range(values: Array) -> Mask:
+    """Of which numbers `is_in_range` holds, an array of their shape."""
+    sizes = abs(values)
+    fits: Mask = (values == 0.0) | ((sizes >= tolerances.LEAST_MAGNITUDE) & (sizes <= tolerances.MOST_MAGNITUDE))
+    return fits
+
+
+def out_of_range(value: float, what: str = "") -> Finding:
+    """What to say of a number that is not in range; what: of one that is not written but computed."""
+    is_small = abs(value) < 1.0
+    subject = f"{what} is {value:g}, " if what else f"{value:g} is "
+    message = f"{subject}too {'small' if is_small else 'large'} to be computed with; accepted: {ACCEPTED}"
+    return Finding("magnitude", message, TOO_SMALL if is_small else TOO_LARGE)

@@ -1,0 +1,282 @@
+"""Units: what "12 mm" and "7850 kg/m^3" are in SI, and of what dimension.
+
+A dimension is the exponents of (kg, m, s). Angles are numbers: rad = 1, so that N m/rad is N m and rpm an angular
+velocity. Hz is left out on purpose: as a rate it would be taken for rad/s by half of its readers.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from functools import lru_cache
+from math import pi
+
+from heuncli.base.errors import Finding
+from heuncli.base.nearest import nearest
+
+Dimension = tuple[int, int, int]
+
+NUMBER: Dimension = (0, 0, 0)
+MASS: Dimension = (1, 0, 0)
+LENGTH: Dimension = (0, 1, 0)
+TIME: Dimension = (0, 0, 1)
+AREA: Dimension = (0, 2, 0)
+VOLUME: Dimension = (0, 3, 0)
+AREA_MOMENT: Dimension = (0, 4, 0)
+RATE: Dimension = (0, 0, -1)
+VELOCITY: Dimension = (0, 1, -1)
+ACCELERATION: Dimension = (0, 1, -2)
+INERTIA: Dimension = (1, 2, 0)
+DENSITY: Dimension = (1, -3, 0)
+LINE_DENSITY: Dimension = (1, -1, 0)
+FORCE: Dimension = (1, 1, -2)
+MOMENT: Dimension = (1, 2, -2)
+IMPULSE: Dimension = (1, 1, -1)
+ANGULAR_IMPULSE: Dimension = (1, 2, -1)
+STIFFNESS: Dimension = (1, 0, -2)
+DAMPING: Dimension = (1, 0, -1)
+PRESSURE: Dimension = (1, -1, -2)
+POWER: Dimension = (1, 2, -3)
+ANGLE = NUMBER
+LINE_FORCE = STIFFNESS
+TURNING_STIFFNESS = MOMENT
+TURNING_DAMPING = ANGULAR_IMPULSE
+
+NAMES: dict[Dimension, tuple[str, str]] = {  # what a value of the dimension is called, and its SI unit
+    NUMBER: ("an angle or a plain number", "rad"),
+    MASS: ("a mass", "kg"),
+    LENGTH: ("a length", "m"),
+    TIME: ("a time", "s"),
+    AREA: ("an area", "m^2"),
+    VOLUME: ("a volume", "m^3"),
+    AREA_MOMENT: ("a second moment of area", "m^4"),
+    RATE: ("an angular velocity", "rad/s"),
+    VELOCITY: ("a velocity", "m/s"),
+    ACCELERATION: ("an acceleration", "m/s^2"),
+    INERTIA: ("a moment of inertia", "kg*m^2"),
+    DENSITY: ("a density", "kg/m^3"),
+    LINE_DENSITY: ("a mass per length", "kg/m"),
+    FORCE: ("a force", "N"),
+    MOMENT: ("a moment", "N*m"),
+    IMPULSE: ("an impulse", "N*s"),
+    ANGULAR_IMPULSE: ("a moment of an impulse", "N*m*s"),
+    STIFFNESS: ("a stiffness or force per length", "N/m"),
+    DAMPING: ("a damping coefficient", "N*s/m"),
+    PRESSURE: ("a pressure", "Pa"),
+    POWER: ("a power", "W"),
+    (0, 0, -2): ("an angular acceleration", "rad/s^2"),
+}
+
+POUND = 0.45359237  # kg, international pound, by definition (1959)
+STANDARD_GRAVITY = 9.80665  # m/s^2, by definition (CGPM 1901)
+
+UNITS: dict[str, tuple[float, Dimension]] = {
+    "kg": (1.0, MASS),
+    "g": (1e-3, MASS),
+    "mg": (1e-6, MASS),
+    "tonne": (1e3, MASS),
+    "lb": (POUND, MASS),
+    "m": (1.0, LENGTH),
+    "km": (1e3, LENGTH),
+    "dm": (1e-1, LENGTH),
+    "cm": (1e-2, LENGTH),
+    "mm": (1e-3, LENGTH),
+    "um": (1e-6, LENGTH),
+    "in": (0.0254, LENGTH),
+    "ft": (0.3048, LENGTH),
+    "l": (1e-3, VOLUME),
+    "s": (1.0, TIME),
+    "ms": (1e-3, TIME),
+    "us": (1e-6, TIME),
+    "min": (60.0, TIME),
+    "h": (3600.0, TIME),
+    "rad": (1.0, NUMBER),
+    "mrad": (1e-3, NUMBER),
+    "deg": (pi / 180.0, NUMBER),
+    "rev": (2.0 * pi, NUMBER),
+    "rpm": (2.0 * pi / 60.0, RATE),
+    "N": (1.0, FORCE),
+    "mN": (1e-3, FORCE),
+    "daN": (1e1, FORCE),
+    "kN": (1e3, FORCE),
+    "MN": (1e6, FORCE),
+    "gf": (1e-3 * STANDARD_GRAVITY, FORCE),
+    "kgf": (STANDARD_GRAVITY, FORCE),
+    "lbf": (POUND * STANDARD_GRAVITY, FORCE),
+    "Nm": (1.0, MOMENT),
+    "kNm": (1e3, MOMENT),
+    "Nmm": (1e-3, MOMENT),
+    "Ns": (1.0, IMPULSE),
+    "Nms": (1.0, ANGULAR_IMPULSE),
+    "J": (1.0, MOMENT),
+    "kJ": (1e3, MOMENT),
+    "W": (1.0, POWER),
+    "kW": (1e3, POWER),
+    "Pa": (1.0, PRESSURE),
+    "hPa": (1e2, PRESSURE),
+    "kPa": (1e3, PRESSURE),
+    "MPa": (1e6, PRESSURE),
+    "GPa": (1e9, PRESSURE),
+    "mbar": (1e2, PRESSURE),
+    "bar": (1e5, PRESSURE),
+    "psi": (POUND * STANDARD_GRAVITY / 0.0254**2, PRESSURE),
+}
+SPELLINGS = {
+    "°": "deg", "degree": "deg", "degrees": "deg", "radian": "rad", "radians": "rad", "µm": "um", "μm": "um",
+    "µs": "us", "μs": "us", "sec": "s", "second": "s", "seconds": "s", "minute": "min", "hour": "h", "meter": "m",
+    "metre": "m", "inch": "in", "U/min": "rpm", "L": "l", "newton": "N", "kilogram": "kg", "turn": "rev",
+    "kp": "kgf",
+}  # fmt: skip
+HINTS = {
+    "Hz": "as an angular velocity write 2*pi*50 for 50 turns a second, or 3000 rpm",
+    "t": "a thousand kilograms are '1 tonne'; t is the time: write 2*t for a multiple of it",
+    "grad": "a degree is deg",
+    "Grad": "a degree is deg",
+}
+
+TOKEN = re.compile(r"\s*(?:(\*\*|[*·⋅×/^()])|([+-]?\d+)|([^\W\d_²³⁴]+|°)|([²³⁴]))")
+SUPERSCRIPTS = {"²": 2, "³": 3, "⁴": 4}
+
+
+def describe(dimension: Dimension) -> str:
+    """A dimension in words: 'a length', or its SI unit where no word is known."""
+    if dimension in NAMES:
+        return NAMES[dimension][0]
+    return f"a quantity in {si_unit(dimension)}"
+
+
+def si_unit(dimension: Dimension) -> str:
+    """The SI unit of a dimension, as it may be written in a spec."""
+    if dimension in NAMES:
+        return NAMES[dimension][1]
+    powers = [(base, power) for base, power in zip(("kg", "m", "s"), dimension, strict=True) if power]
+    return "*".join(base if power == 1 else f"{base}^{power}" for base, power in powers)
+
+
+def spelling_of(symbol: str) -> str:
+    """A unit's symbol by its first spelling: deg for degrees; what is no other spelling as it is."""
+    return SPELLINGS.get(symbol, symbol)
+
+
+def in_si(figure: str, symbol: str, rest: str = "") -> str | None:
+    """What to write for '40 mm' inside an expression: a hint; None where the word is no unit. figure may be a name."""
+    symbol = SPELLINGS.get(symbol, symbol)
+    if symbol not in UNITS:
+        return None
+    size, named = UNITS[symbol][0], "the quantity"
+    try:
+        written, named = f"{float(figure) * size:.15g}", f"{figure} {symbol}"
+    except ValueError:
+        written = f"{figure}*{size!r}" if figure else repr(size)
+    return f"units do not stand inside expressions: write {written}{rest} in SI, or name {named} under parameters"
+
+
+def spelled(unit: str) -> str | None:
+    """A unit as it is written here, for kgm2, kg*m2, g/cm3, kgm^2; None where it is no other than it was."""
+    powers = re.sub(r"(?<=[^\W\d])([2-4])(?!\w)", r"^\1", re.sub(r"\bkgm(?=\b|\d)", "kg*m", unit))
+    try:
+        parse_unit(powers)
+    except Finding:
+        return None
+    return powers if powers != unit else None
+
+
+@lru_cache(maxsize=1000)
+def parse_unit(text: str) -> tuple[float, Dimension]:
+    """Size in SI and dimension of a unit such as 'kg/m^3', 'N m', 'N/(m/s)'. Raises Finding."""
+    reader = _Reader(text)
+    try:
+        size, dimension = reader.product()
+    except ArithmeticError:  # powers of powers: larger or smaller than any double
+        hint = "a power is a small whole number, as in m^2"
+        raise Finding("unknown-unit", f"'{text}' is not a unit: its size is beyond all numbers", hint) from None
+    if reader.token is not None:
+        raise Finding("unknown-unit", f"'{text}' is not a unit: '{reader.token}' is not expected", FORM)
+    return size, dimension
+
+
+FORM = "units are joined by *, / or a space, with whole powers: kg/m^3, N*m, N/(m/s)"
+
+
+class _Reader:
+    """A unit, read from left to right: factors with whole powers, joined by *, / or a space."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+        self.tokens = self.split(text)
+        self.depth = 0
+        self.advance()
+
+    def split(self, text: str) -> Iterator[str]:
+        at, text = 0, text.rstrip()
+        while at < len(text):
+            found = TOKEN.match(text, at)
+            if found is None:
+                message = f"'{text}' is not a unit: '{text[at:].strip()[0]}' is not expected"
+                raise Finding("unknown-unit", message, FORM)
+            at = found.end()
+            yield found[0].strip()
+
+    def advance(self) -> None:
+        self.token = next(self.tokens, None)
+
+    def product(self) -> tuple[float, Dimension]:
+        size, dimension = self.power()
+        while self.token is not None and self.token != ")":
+            sign = 1
+            if self.token in ("*", "·", "⋅", "×", "/"):
+                sign = -1 if self.token == "/" else 1
+                self.advance()
+            factor, other = self.power()
+            size = size * factor if sign == 1 else size / factor
+            dimension = (dimension[0] + sign * other[0], dimension[1] + sign * other[1], dimension[2] + sign * other[2])
+        return size, dimension
+
+    def power(self) -> tuple[float, Dimension]:
+        size, dimension = self.factor()
+        exponent = 1
+        if self.token in ("^", "**"):
+            self.advance()
+            if self.token is None or not self.token.lstrip("+-").isdecimal() or len(self.token) > 2:
+                message = f"'{self.text}' is not a unit: a power is a small whole number"
+                raise Finding("unknown-unit", message, "as in m^2")
+            exponent = int(self.token)
+            self.advance()
+        elif self.token in SUPERSCRIPTS:
+            exponent = SUPERSCRIPTS[self.token]
+            self.advance()
+        elif self.token is not None and self.token.lstrip("+-").isdecimal():
+            raise Finding(
+                "unknown-unit", f"'{self.text}' is not a unit: '{self.token}' is not expected", "a power is m^2"
+            )
+        return size**exponent, (dimension[0] * exponent, dimension[1] * exponent, dimension[2] * exponent)
+
+    def factor(self) -> tuple[float, Dimension]:
+        token = self.token
+        self.advance()
+        if token == "(" and self.depth < 8:
+            self.depth += 1
+            size, dimension = self.product()
+            if self.token != ")":
+                raise Finding("unknown-unit", f"'{self.text}' is not a unit: a parenthesis is not closed", FORM)
+            self.advance()
+            self.depth -= 1
+            return size, dimension
+        if token == "1":  # as in 1/s
+            return 1.0, NUMBER
+        symbol = SPELLINGS.get(token or "", token)
+        if symbol in UNITS:
+            return UNITS[symbol]
+        if token is None:
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: it ends too early", FORM)
+        if not token[0].isalpha():
+            raise Finding("unknown-unit", f"'{self.text}' is not a unit: '{token}' is not expected", FORM)
+        raise Finding("unknown-unit", f"'{token}' is not a unit", HINTS.get(token) or nearest_unit(token))
+
+
+def nearest_unit(symbol: str) -> str:
+    """A hint that names the unit meant, or the common ones."""
+    meant = nearest(symbol, UNITS)
+    if meant is not None:
+        return f"did you mean {meant}?"
+    return "units are kg, g, m, mm, s, ms, rad, deg, rpm, N, kN, Pa, bar, ... and products such as N*m, kg/m^3, m/s^2"

@@ -1,0 +1,326 @@
+"""Section planes: the cuts of each section, on which side of them attachments lie, and the pieces they separate.
+
+The piece is what lies on the side the normal n points into. A run of cuts has one normal. Where a joint, load or point
+mass lies in the plane of a cut, the section loads jump: two cuts are made there, just before and just beyond it; at the
+ends of the run only the one inside.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Finding, Problem, SourceLocation, SpecError
+from heuncli.base.joint_kinds import JOINTS
+from heuncli.base.records import record, replace
+from heuncli.loads.kinetostatics.section_axes import first_axis
+from heuncli.multibody.mechanism.model import GROUND, Mechanism, PointLoad
+from heuncli.results.results import Array
+from heuncli.scene.file_format.models import Properties, Section, Spec
+from heuncli.scene.shapes.forms import Form
+from heuncli.scene.shapes.inertia import pseudo_inertia
+from heuncli.scene.shapes.rotations import cross
+
+if TYPE_CHECKING:
+    from heuncli.loads.kinetostatics.auto_properties import CutProperties, Cutting
+
+BEFORE, BEYOND = 1.0, -1.0
+TOLD_APART = 4.0  # times what counts as in a plane: the corners of a run are told apart by as much (stretch.py)
+
+
+@record
+class Cuts:
+    """The cuts of one section, k of them; body axes, SI.
+
+    n: normal; e1, e2: axes in the plane, (e1, e2, n) right-handed; points (k, 3); s (k,): distance along the run, None
+    for a single cut; side (k,): +1 just before what lies in the plane, -1 just beyond, 0 nothing there; near: what
+    counts as in it; pieces (k, 4, 4): pseudo-inertias about the body's origin; centroids (k, 3) of the cross-sections,
+    None without shapes; about: where moments are taken: "at", "centroid", or (body, point); line: whether the
+    reduction line (`sections.reduction_line`) is told, too; warnings: sentences on what the planes meet;
+    properties, strength [Pa]: for stresses, None where not given (of kind `auto` those of the form); form: the shapes
+    that are cut. struck: a blow is what they are looked at for, in which nothing is stressed or moves yet.
+
+    Where cuts move along a body from instant to instant, points, pieces and centroids have an axis of instants first.
+    """
+
+    name: str
+    body: int
+    n: Array
+    e1: Array
+    e2: Array
+    points: Array
+    s: Array | None
+    side: Array
+    near: float
+    pieces: Array
+    centroids: Array | None
+    about: str | tuple[int, Array]
+    line: bool
+    properties: Properties | None
+    strength: float | None
+    warnings: tuple[str, ...]
+    form: Form | None = None
+    struck: bool = False
+
+    @cached_property
+    def taken(self) -> CutProperties:
+        """The properties taken from the shapes, of all cuts one after the other."""
+        from heuncli.loads.kinetostatics.auto_properties import properties_of  # few scenes ask for them
+
+        return properties_of(self.cutting)
+
+    @property
+    def cutting(self) -> Cutting:
+        """The form and the planes that cut it."""
+        from heuncli.loads.kinetostatics.auto_properties import Cutting
+
+        assert self.form is not None
+        side = np.broadcast_to(self.side, self.points.shape[:-1])
+        return Cutting(self.form, self.n, self.e1, (self.points @ self.n).ravel(), side.ravel())
+
+    def laid_for(self, on: Sequence[object]) -> Cuts:
+        """These cuts: where they lie does not depend on what acts on the body (that of a Stretch may)."""
+        return self
+
+    @property
+    def without_stresses(self) -> Cuts:
+        """The cuts as they meet a blow: of impulses no stresses are told, and no energies."""
+        return replace(self, properties=None, struck=True)
+
+
+def attached(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """Loads, impulses, joints, stops with their points, body axes.
+
+    A joint whose point of action moves over the body is none of them, but where it comes to a stop.
+    """
+    points: list[tuple[str, Array]] = []
+    for joint in mechanism.joints:
+        if joint.b == body:
+            points.append((f"joint {joint.name}", joint.q))
+        if joint.a == body and not JOINTS[joint.kind].wanders:
+            points.append((f"joint {joint.name}", joint.p))
+    for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.spread is not None:
+            continue
+        points += [(f"force {load.name}", point) for owner, point in load.points if owner == body]
+    for blow in mechanism.blows:
+        if blow.body == body and blow.point is not None:
+            points.append((f"impulse {blow.name}", blow.point))
+    for stop in mechanism.stops:
+        joint = mechanism.joints[stop.joint]
+        if joint.a == body and stop.quantity == "travel":
+            limits = [limit for limit in (stop.low, stop.high) if limit is not None]
+            for limit in limits:
+                way = limit * joint.axis if joint.path is None else joint.path.at(limit)[0]
+                points.append((f"stop {stop.name}", joint.p + way))
+    return points
+
+
+def spread_on(mechanism: Mechanism, body: int) -> list[tuple[str, Array]]:
+    """Distributed loads on a body, each with the two ends of its line, (2, 3), body axes."""
+    found: dict[str, Array] = {}
+    for load in mechanism.loads:
+        if isinstance(load, PointLoad) and load.spread is not None and load.body == body:
+            found.setdefault(f"force {load.name}", np.stack([load.spread.start, load.spread.end]))
+    return list(found.items())
+
+
+def lay_cuts(mechanism: Mechanism, spec: Spec, forms: dict[str, Form]) -> tuple[Cuts, ...]:
+    """The cuts of all sections of a spec. Raises SpecError with every section that cannot be cut."""
+    cuts: list[Cuts] = []
+    problems: list[Problem] = []
+    index = {b.name: i for i, b in enumerate(mechanism.bodies)}
+    for name, section in spec.sections.items():
+        try:
+            cuts.append(_lay(mechanism, spec, name, section, index, forms.get(section.body)))
+        except SpecError as error:
+            problems += error.problems
+        except Finding as finding:
+            place = spec.location(f"sections.{name}")
+            problems.append(Problem(finding.code, f"{section.body}: {finding.message}", place, finding.hint))
+    if problems:
+        raise SpecError(*problems)
+    return tuple(cuts)
+
+
+def _lay(
+    mechanism: Mechanism, spec: Spec, name: str, section: Section, index: dict[str, int], form: Form | None
+) -> Cuts:
+    body = index[section.body]
+    n = np.array(section.normal, dtype=float)
+    n = n / np.sqrt(n @ n)
+    e1 = first_axis(n, section.first_axis)
+    points, s = _cut_points(section)
+    d = points @ n
+    loaded, lines = attached(mechanism, body), spread_on(mechanism, body)
+    heights = np.array([point for _, point in loaded]).reshape(-1, 3) @ n
+    ends = np.array([line for _, line in lines]).reshape(-1, 2, 3) @ n
+    near = _near(form, np.append(heights, ends), d)
+    # of a distributed load's line an end in the plane carries nothing, but all of it may lie there
+    off = np.concatenate([np.abs(heights - d[:, None]), np.abs(ends - d[:, None, None]).max(axis=2)], axis=1)
+    in_plane = off <= near
+    loaded, heights = loaded + lines, np.append(heights, ends)
+    jumps = np.asarray(in_plane.any(axis=1))
+    if form is not None:
+        jumps = jumps | form.masses_in_plane(n, d) | form.rods_in_plane(n, d)
+    location = spec.location(f"sections.{name}")
+    if s is None:
+        if jumps[0] and section.side is None:
+            raise SpecError(
+                _needs_side([what for (what, _), on in zip(loaded, in_plane[0], strict=True) if on], location)
+            )
+        # kept also where nothing lies in the plane: joints may move into it during the run
+        side = np.array([{"before": BEFORE, "beyond": BEYOND, None: 0.0}[section.side]])
+    else:
+        if s[-1] <= TOLD_APART * near:
+            message = f"the run is {s[-1]:.3g} m long, but cuts of a body of this size are told apart by {near:.3g} m"
+            raise SpecError(Problem("short-run", message, location, hint="is the body's largest coordinate right?"))
+        take, side = _sides_of_run(jumps)
+        points, s, d = points[take], s[take], d[take]
+    reach = (float(heights.min(initial=np.inf)) - near, float(heights.max(initial=-np.inf)) + near)
+    pieces, centroids, warnings = _cut_pieces(location, name, section, form, n, points, side, reach)
+    about: str | tuple[int, Array] = "at"
+    if section.reduce_to == "centroid":
+        about = "centroid"
+    elif not isinstance(section.reduce_to, str):
+        end = section.reduce_to
+        about = (GROUND if end.body == "ground" else index[end.body], np.array(end.point))
+    cuts = Cuts(
+        name=name, body=body, n=n, e1=e1, e2=cross(n, e1), points=points, s=s, side=side, near=near, pieces=pieces,
+        centroids=centroids, about=about, line=section.reduce_to == "line", properties=section.properties,
+        strength=section.strength, warnings=warnings, form=form,
+    )  # fmt: skip
+    if section.properties is not None and section.properties.kind == "auto":
+        _require_properties(location, cuts)
+    return cuts
+
+
+def _require_properties(location: SourceLocation, cuts: Cuts) -> None:
+    """Raise SpecError where the properties of a cut cannot be taken from the shapes; of a run anywhere along it."""
+    from heuncli.loads.kinetostatics.auto_properties import properties_of
+
+    cutting = cuts.cutting
+    if cuts.s is not None and cuts.form is not None:
+        low, high = float(cutting.d[0]), float(cutting.d[-1])
+        corners = np.sort(cuts.form.corners(cuts.n))
+        inside = (corners > low + cuts.near) & (corners < high - cuts.near)
+        ends = np.concatenate([[low], corners[inside], [high]])
+        d = np.concatenate([ends[:-1], 0.5 * (ends[1:] + ends[:-1]), ends[1:]])
+        side = np.repeat([BEYOND, 0.0, BEFORE], len(ends) - 1)
+        long = np.tile(np.diff(ends) > 4.0 * cuts.near, 3)
+        cutting = replace(cutting, d=d[long], side=side[long])
+    missing = properties_of(cutting).missing
+    if missing:
+        k = min(missing, key=lambda k: float(cutting.d[k]))
+        where = f" at s = {float(cutting.d[k] - cuts.points[0] @ cuts.n):.6g} m" if cuts.s is not None else ""
+        hint = "give them: circle, tube, rectangle, or area, I1, I2, J, c1, c2; or cut square to the bar"
+        message = f"properties: auto cannot be taken from the shapes{where}: {missing[k]}"
+        raise SpecError(Problem("no-properties", message, location, hint=hint))
+
+
+def _cut_points(section: Section) -> tuple[Array, Array | None]:
+    """Points of the cuts (k, 3) and their distances along the run (k,), None for a single cut."""
+    if section.at is not None:
+        return np.array([section.at], dtype=float), None
+    first, last = np.array(section.from_), np.array(section.to)
+    share = np.linspace(0.0, 1.0, section.count)
+    points = first + share[:, None] * (last - first)
+    points[-1] = last
+    return points, share * float(np.sqrt((last - first) @ (last - first)))
+
+
+def _near(form: Form | None, heights: Array, d: Array) -> float:
+    """The distance [m] from a plane up to which a point counts as in it: rounding of the coordinates."""
+    extent = float(np.abs(heights).max(initial=0.0))
+    if form is not None:
+        return max(form.near, tolerances.IN_PLANE * extent)
+    return tolerances.IN_PLANE * max(extent, float(np.abs(d).max()), tolerances.LEAST_EXTENT)
+
+
+def _needs_side(names: list[str], location: SourceLocation) -> Problem:
+    """The problem of a single cut with something in its plane and no side given."""
+    what = " and ".join(names) if names else "a point mass or rod of the body"
+    hint = "add side: before (the cut just before it, so that it belongs to the piece) or side: beyond"
+    return Problem(
+        "needs-side", f"{what} {'lie' if len(names) > 1 else 'lies'} in the plane of the cut", location, hint
+    )
+
+
+def _sides_of_run(jumps: NDArray[np.bool_]) -> tuple[list[int], Array]:
+    """For each cut of a run the index of its point and its side: two cuts where the loads jump, at the ends one."""
+    rows: list[tuple[int, float]] = []
+    for k, jump in enumerate(jumps.tolist()):
+        if not jump:
+            rows.append((k, 0.0))
+        elif k == 0:
+            rows.append((k, BEYOND))
+        elif k == len(jumps) - 1:
+            rows.append((k, BEFORE))
+        else:
+            rows += [(k, BEFORE), (k, BEYOND)]
+    return [k for k, _ in rows], np.array([side for _, side in rows])
+
+
+def _cut_pieces(
+    location: SourceLocation, name: str, section: Section, form: Form | None, n: Array, points: Array, side: Array,
+    reach: tuple[float, float],
+) -> tuple[Array, Array | None, tuple[str, ...]]:  # fmt: skip
+    """Pieces, centroids and warnings of the cuts; reach: from the least to the largest n.x of joints and loads."""
+    if form is None:
+        if section.piece is None:
+            raise SpecError(Problem(
+                "needs-shapes", f"the body {section.body} has no shapes to cut", location,
+                hint="build the body from shapes, or give a single cut its piece: {mass, center, inertia}",
+            ))  # fmt: skip
+        piece = section.piece
+        return pseudo_inertia(piece.mass, np.array(piece.center), np.array(piece.inertia))[None], None, ()
+    d, run = points @ n, section.at is None
+    # the ends of a run may lie in end faces: there the limits from inside are taken
+    inside = side.copy()
+    if run:
+        inside[0], inside[-1] = BEYOND, BEFORE
+    cross_sections = form.cross_sections(n, d, inside)
+    bare = cross_sections.regions == 0
+    _require_body(location, section, form, n, d[bare], reach)
+    warnings = []
+    if bare.any():
+        meets = f"{int(bare.sum())} of {len(d)} cuts meet" if run else "the plane meets"
+        where = "" if section.properties is None else ", and stresses are about the cut's point"
+        what = f"{meets} no material of the body {section.body}; the loads are those of what lies beyond{where}"
+        warnings.append(f"sections.{name}: {what}")
+    if (cross_sections.regions > 1).any():
+        most = int(cross_sections.regions.max())
+        what = f"meets the body {section.body} in {most} separate places; the loads are their sum"
+        warnings.append(f"sections.{name}: the plane {what}")
+    if form.rods_in_plane(n, d).any():
+        what = f"runs along a rod of the body {section.body}; the rod's mass lies on the side chosen"
+        warnings.append(f"sections.{name}: the plane {what}")
+    centroids = np.where(bare[:, None], points, cross_sections.centroid)
+    return form.pieces(n, d, side), centroids, tuple(warnings)
+
+
+def _require_body(
+    location: SourceLocation, section: Section, form: Form, n: Array, d: Array, reach: tuple[float, float]
+) -> None:
+    """Raise SpecError unless cuts at d, which meet no material, have something of the body on both sides of them.
+
+    What is drawn apart is one body all the same: what the piece exerts on the remainder is as certain there as in a
+    bar without mass. It has no centroid.
+    """
+    what = "a cut of the run" if section.at is None else "the plane"
+    low, high = form.extent(n)
+    off = d[(d < min(low, reach[0])) | (d > max(high, reach[1]))]
+    if len(off):
+        lies = float(off[0])
+        hint = f"along the normal the body reaches from {low:.6g} to {high:.6g} m, the plane lies at {lies:.6g} m"
+        raise SpecError(Problem("misses-body", f"{what} does not meet the body {section.body}", location, hint))
+    if len(d) and section.reduce_to == "centroid":
+        message = f"{what} meets no material of the body {section.body}, and so has no centroid"
+        raise SpecError(
+            Problem("misses-body", message, location, hint="take moments about the cut's point: reduce_to: at")
+        )

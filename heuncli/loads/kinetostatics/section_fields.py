@@ -1,0 +1,163 @@
+"""The largest shear and the largest von Mises stress over a section, by how both are spread over its shape.
+
+    sigma = axial + bend . u,   mises^2 = sigma^2 + 3 |tau|^2,   u the place, in half extents of the section
+Shear by Jourawski, tau = Q S/(I b), torsion by Saint-Venant. What is found is never below the largest of these fields.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import lru_cache
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.records import record
+from heuncli.results.results import Array
+
+NEWTON = 8  # rounds from a start within a factor 1.5 of the solution: doubling digits, four would do
+CELLS = 10  # a half extent: what is known to a cell errs by a few per cent of the largest stress
+TERMS = 1000  # of the torsion's series: the rest is some 1e-6 along the short sides, and less elsewhere
+CHUNK = 512  # places in time and along a run treated together: the cells' arrays stay in the cache
+
+
+@record
+class StressFields:
+    """What the loads make of a section, [Pa], arrays of one shape, signs as the loads'.
+
+    bend: of the normal stress at the ends of its half extents along e1, e2; shear: largest from Q1, Q2 alone;
+    torsion: largest from T alone.
+    """
+
+    axial: Array
+    bend: tuple[Array, Array]
+    shear: tuple[Array, Array]
+    torsion: Array
+
+    @property
+    def sheared(self) -> Array:
+        """Largest stress from the shear force alone where its components add up as vectors."""
+        return np.asarray(np.hypot(*self.shear))
+
+
+Largest = Callable[[StressFields], tuple[Array, Array]]  # shear and von Mises
+
+
+def circle(at: StressFields) -> tuple[Array, Array]:
+    """Of a solid circle: both on its edge, where tau = torsion + shear x u runs along it.
+
+    Inside, tau = torsion (n x u) + q - (q.u) u (textbooks' directions: chords' ends along the edge): linear along a
+    chord normal to Q, as sigma is. So mises^2 is convex along it, and largest at an end.
+    """
+    return np.abs(at.torsion) + at.sheared, np.sqrt(on_edge(at))
+
+
+def tube(at: StressFields) -> tuple[Array, Array]:
+    """Of a ring: on its edge, as a thin one; but what shear takes off the torsion is not counted on inside thick walls.
+
+    Along a chord the shear that Jourawski gives is the same: convex again, and below shear * (cos of the place)^2.
+    """
+    unrelieved = (np.abs(at.axial) + np.hypot(*at.bend)) ** 2 + 3.0 * at.torsion**2
+    return np.abs(at.torsion) + at.sheared, np.sqrt(np.maximum(on_edge(at), unrelieved))
+
+
+def on_edge(at: StressFields) -> Array:
+    """Largest (axial + bend.u)^2 + 3 (torsion + (shear2, -shear1).u)^2 on the circle |u| = 1.
+
+    u.H u + 2 g.u + c is nowhere above c + l + g.(l - H)^-1 g for any l above the eigenvalues of H; the least of these
+    bounds is met (a trust region's dual): |(l - H)^-1 g| = 1, by Newton's steps on the inverse of it, from below.
+    """
+    scale = np.abs(at.axial) + np.abs(at.torsion) + np.hypot(*at.bend) + at.sheared
+    one = np.where(scale > 0.0, scale, 1.0)
+    a, t, b1, b2, q1, q2 = (
+        v / one for v in (at.axial, math.sqrt(3.0) * at.torsion, *at.bend, *(math.sqrt(3.0) * q for q in at.shear))
+    )
+    difference, mixed = 0.5 * (b1 * b1 + q2 * q2 - b2 * b2 - q1 * q1), b1 * b2 - q1 * q2
+    radius = np.hypot(difference, mixed)
+    turn = 0.5 * np.arctan2(mixed, difference)
+    x, y = a * b1 + t * q2, a * b2 - t * q1
+    g1, g2 = np.abs(x * np.cos(turn) + y * np.sin(turn)), np.abs(y * np.cos(turn) - x * np.sin(turn))
+    gap = 2.0 * radius
+    # l = the larger eigenvalue + above
+    above = np.maximum(np.maximum(g1, g2 - gap), tolerances.EPS * tolerances.EPS)
+    for _ in range(NEWTON):
+        u1, u2 = g1 / above, g2 / (above + gap)
+        square = u1 * u1 + u2 * u2
+        slope = u1 * u1 / above + u2 * u2 / (above + gap)
+        further = np.sqrt(square) > 1.0
+        above = above + np.where(further, square * (np.sqrt(square) - 1.0) / np.where(further, slope, 1.0), 0.0)
+    largest = 0.5 * (b1 * b1 + b2 * b2 + q1 * q1 + q2 * q2) + radius + above + g1 * g1 / above + g2 * g2 / (above + gap)
+    return np.asarray((largest + a * a + t * t) * scale * scale)
+
+
+def unknown(at: StressFields) -> tuple[Array, Array]:
+    """Of a section whose shape is not known: as if all that is largest met in one place."""
+    shear = np.abs(at.torsion) + at.sheared
+    return shear, np.sqrt((np.abs(at.axial) + np.abs(at.bend[0]) + np.abs(at.bend[1])) ** 2 + 3.0 * shear**2)
+
+
+def rectangle(width: float, height: float) -> Largest:
+    """Of a solid rectangle, width along e1: largest of bounds over cells of it.
+
+    All stresses are linear in the loads, with factors that lie in an interval over a cell.
+    """
+    middle, half = rectangle_factors(width, height)
+
+    def largest(at: StressFields) -> tuple[Array, Array]:
+        loads = np.stack(np.broadcast_arrays(at.axial, *at.bend, *at.shear, at.torsion)).reshape(6, -1)
+        shear, mises = np.empty((2, loads.shape[1]))
+        for first in range(0, loads.shape[1], CHUNK):
+            part = loads[:, first : first + CHUNK]
+            sigma, tau1, tau2 = (np.abs(middle @ part) + half @ np.abs(part)).reshape(3, -1, part.shape[1])
+            square = tau1 * tau1 + tau2 * tau2
+            shear[first : first + CHUNK] = np.sqrt(square.max(axis=0))
+            mises[first : first + CHUNK] = np.sqrt((sigma * sigma + 3.0 * square).max(axis=0))
+        return shear.reshape(np.shape(at.axial)), mises.reshape(np.shape(at.axial))
+
+    return largest
+
+
+@lru_cache(maxsize=32)
+def rectangle_factors(width: float, height: float) -> tuple[Array, Array]:
+    """Middles and half widths of the intervals: rows sigma, tau1, tau2 of all cells, columns the loads of `Fields`."""
+    u = np.linspace(0.0, 1.0, CELLS + 1)
+    parabola = 1.0 - u * u
+    twist1, twist2 = twist(width, height, u)
+    # both fall with one coordinate and grow with the other: phi_xy has one sign in a quadrant
+    low1, high1, low2, high2 = twist1[1:, :-1], twist1[:-1, 1:], twist2[:-1, 1:], twist2[1:, :-1]
+    i, j = np.meshgrid(np.arange(CELLS), np.arange(CELLS), indexing="ij")
+    zero = np.zeros((CELLS, CELLS))
+    none, all_over = (zero, zero), (zero + 1.0, zero + 1.0)
+    fall1, fall2 = (parabola[i], parabola[i + 1]), (parabola[j], parabola[j + 1])
+    rows: list[list[list[tuple[Array, Array]]]] = [[], [], []]
+    for s1, s2 in ((1.0, 1.0), (-1.0, 1.0), (1.0, -1.0), (-1.0, -1.0)):
+        rise1, rise2 = (s1 * u[i], s1 * u[i + 1]), (s2 * u[j], s2 * u[j + 1])
+        rows[0].append([all_over, rise1, rise2, none, none, none])
+        rows[1].append([none, none, none, fall1, none, (-s2 * low1, -s2 * high1)])
+        rows[2].append([none, none, none, none, fall2, (s1 * low2, s1 * high2)])
+    ends = np.array(rows).reshape(3, 4, 6, 2, -1).transpose(3, 0, 1, 4, 2).reshape(2, -1, 6)
+    return 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
+
+
+def twist(width: float, height: float, u: Array) -> tuple[Array, Array]:
+    """Sizes of the torsional stresses along e1 and e2 at (u[i], u[j]), u in half sides, over the largest of all.
+
+    Saint-Venant's series, Timoshenko, Goodier, Theory of Elasticity, section 109; the long side is its second.
+    """
+    if width > height:
+        along2, along1 = twist(height, width, u)
+        return along1.T, along2.T
+    ratio = height / width
+    n = np.arange(1, 2 * TERMS, 2)[:, None, None]
+    x, y = 0.5 * math.pi * n * u[:, None], 0.5 * math.pi * n * ratio * u
+    sign = np.where(n % 4 == 1, 1.0, -1.0) / n**2
+    whole = np.exp(-math.pi * n * ratio)
+    edge = np.exp(y - 0.5 * math.pi * n * ratio) / (1.0 + whole)
+    cosh, sinh = edge * (1.0 + np.exp(-2.0 * y)), edge * (1.0 - np.exp(-2.0 * y))
+    c = 8.0 / math.pi**2
+    along1 = c * (sign * sinh * np.cos(x)).sum(axis=0)
+    along2 = u[:, None] - c * (sign * cosh * np.sin(x)).sum(axis=0)
+    along2[:, -1] = 0.0  # along the short side itself
+    along1[-1], along1[:, 0], along2[0] = 0.0, 0.0, 0.0
+    return np.maximum(along1, 0.0) / along2[-1, 0], np.maximum(along2, 0.0) / along2[-1, 0]

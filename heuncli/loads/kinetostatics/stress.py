@@ -1,0 +1,128 @@
+"""Stresses in a section of given properties, from its loads about the centroid.
+
+    sigma = N/A + (M1/I1) y2 - (M2/I2) y1,   tau_T = T/W_T,   tau_Q = k |Q|/A,   mises^2 = sigma^2 + 3 tau^2
+linear over the section, principal axes e1, e2; k by the section's own shape: tau_Q is the largest that Jourawski's
+Q S/(I b) gives, for a ring across its middle. Where they meet, and what is largest there: section_fields.py.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from heuncli.base.records import record
+from heuncli.loads.kinetostatics import section_fields as fields
+from heuncli.results.results import Array, Block
+
+# Wide-flange beams sheared along the web reach 5.1 (HE 260 A), tubes 2, a diamond 9/8: sections that are given by
+# their moments are beams mostly. A thinner web has more.
+UNKNOWN_SHEAR = 5.5
+
+
+Number = float | Array  # one, or one a cut
+Sizes = Mapping[str, Number]  # a section's measures by name, as the spec gives them
+
+
+@record
+class SectionModuli:
+    """Area [m2], second moments about e1 and e2 [m4], half extents c1 along e1 and c2 along e2 [m], W_T [m3].
+
+    shear: the largest shear stress over the mean one; round: whether bending about any axis meets the same extent
+    (circle, tube), else the corners count; largest: of the whole section.
+    """
+
+    area: Number
+    I1: Number
+    I2: Number
+    c1: Number
+    c2: Number
+    W_T: Number
+    shear: Number
+    round: bool
+    largest: fields.Largest
+
+
+def circle(v: Sizes) -> SectionModuli:
+    """Solid circle."""
+    return ring(v["radius"], 0.0, fields.circle)
+
+
+def tube(v: Sizes) -> SectionModuli:
+    """Circular ring."""
+    return ring(v["radius"], v["inner_radius"], fields.tube)
+
+
+def ring(R: Number, r: Number, largest: fields.Largest) -> SectionModuli:
+    """From a solid circle to a thin tube."""
+    I = 0.25 * math.pi * (R**4 - r**4)
+    shear = 4.0 / 3.0 * (R * R + R * r + r * r) / (R * R + r * r)
+    return SectionModuli(math.pi * (R * R - r * r), I, I, R, R, 2.0 * I / R, shear, True, largest)
+
+
+def rectangle(v: Sizes) -> SectionModuli:
+    """Solid rectangle, width along e1, height along e2; W_T by Saint-Venant's series."""
+    b, h = float(v["width"]), float(v["height"])
+    I1, I2, W_T = b * h**3 / 12.0, h * b**3 / 12.0, torsion_modulus(b, h)
+    return SectionModuli(b * h, I1, I2, 0.5 * b, 0.5 * h, W_T, 1.5, False, fields.rectangle(b, h))
+
+
+ODD = range(1, 40, 2)
+FIFTH = 1.0045237627951382  # sum of 1/n^5 over odd n, 31/32 zeta(5): the rest of the series converges exponentially
+
+
+def torsion_modulus(b: float, h: float) -> float:
+    """T over the largest torsional shear stress of a rectangle.
+
+    Timoshenko, Goodier, Theory of Elasticity, section 109.
+    """
+    a, c = min(b, h), max(b, h)
+    slope = 1.0 - 8.0 / math.pi**2 * sum(1.0 / (n * n * math.cosh(min(0.5 * n * math.pi * c / a, 700.0))) for n in ODD)
+    return torsion_constant(b, h) / (a * slope)
+
+
+def torsion_constant(b: float, h: float) -> float:
+    """J of a rectangle: T over modulus of rigidity and twist."""
+    a, c = min(b, h), max(b, h)
+    tanh = FIFTH - sum((1.0 - math.tanh(0.5 * n * math.pi * c / a)) / n**5 for n in ODD)
+    return a**3 * c / 3.0 * (1.0 - 192.0 * a / (math.pi**5 * c) * tanh)
+
+
+def general(v: Sizes) -> SectionModuli:
+    """Properties as given; the torsional stress as the thickest shape has it that fits.
+
+    A convex section's is at most 2 rho T/J, rho the radius of the largest circle in it (Payne's bound of the stress
+    function's slope), which is at most min(c1, c2); an open profile's is t T/J with walls of t < 2 min(c1, c2).
+    """
+    c1, c2, shear = v["c1"], v["c2"], v.get("shear_factor", UNKNOWN_SHEAR)
+    reach = np.maximum(np.maximum(c1, c2), 2.0 * np.minimum(c1, c2))
+    return SectionModuli(v["area"], v["I1"], v["I2"], c1, c2, v["J"] / reach, shear, False, fields.unknown)
+
+
+MODULI: dict[str, Callable[[Sizes], SectionModuli]] = {
+    "circle": circle, "tube": tube, "rectangle": rectangle, "general": general,
+}  # fmt: skip
+
+
+def stresses(moduli: SectionModuli, loads: Mapping[str, Array], strength: float | None) -> Block:
+    """Extreme normal stresses, largest and mean shear, von Mises and utilisation, [Pa], shapes as the loads'.
+
+    loads: N, Q1, Q2, T, M1, M2 about the centroid.
+    """
+    m = moduli
+    at = fields.StressFields(
+        loads["N"] / m.area,
+        (-loads["M2"] * (m.c1 / m.I2), loads["M1"] * (m.c2 / m.I1)),
+        (m.shear * loads["Q1"] / m.area, m.shear * loads["Q2"] / m.area),
+        loads["T"] / m.W_T,
+    )
+    bending = np.hypot(*at.bend) if m.round else np.abs(at.bend[0]) + np.abs(at.bend[1])
+    shear, mises = m.largest(at)
+    block: Block = {
+        "normal_max": at.axial + bending, "normal_min": at.axial - bending, "shear_torsion": np.abs(at.torsion),
+        "shear_mean": np.hypot(loads["Q1"], loads["Q2"]) / m.area, "shear_max": shear, "mises": mises,
+    }  # fmt: skip
+    if strength is not None:
+        block["utilisation"] = mises / strength
+    return block

@@ -1,0 +1,72 @@
+"""A method of integration as data: rows of (stage, coefficient), zeros left out, and the arrays the kernel takes."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+from heuncli.base.records import record
+
+Row = tuple[tuple[int, float], ...]
+QUATERNION, GLOBAL, RECENTRED = range(3)  # how attitudes are held within a step (kernel/stepping.py)
+
+
+@record
+class Method:
+    """A Runge-Kutta method with dense output, or what stands in for one; a step goes from y by h, with x = 0 ... 1.
+
+    stages, solution, extra, estimates and dense are rows of its tableau. Of two estimates the first is the coarser one,
+    and the error is h e5^2 / sqrt(e5^2 + 0.01 e3^2).
+    Dense output is a polynomial in nested form, y + x (F0 + (1 - x) (F1 + x (F2 + (1 - x) (F3 + ...)))): F0, F1, F2 are
+    those of the cubic through both ends, which every method has, and the rows give the others.
+    """
+
+    name: str
+    order: int
+    nodes: tuple[float, ...]  # of all stages, the first 0
+    stages: tuple[Row, ...]  # of stages 1, 2, ...: what each takes of those before it
+    solution: Row
+    extra: tuple[Row, ...] = ()  # further stages, for the dense output
+    estimates: tuple[Row, ...] = ()  # of the error: one, or two
+    error_order: int = 1  # of the estimate in h
+    # of F3, F4, ...; in them an implicit method combines what stages 1, 2, ... are beyond the start, then F0, F1, F2
+    dense: tuple[Row, ...] = ()
+    determined: bool = False  # nothing is integrated: every instant follows from the drives
+    fixed: bool = False  # steps are given, and none is judged
+    by_step: bool = False  # no dense output: an instant within a step is reached by a step of its own from the start
+    implicit: bool = False  # the stages are solved for (kernel/collocation.py), by the numbers in `collocation`
+    attitude: int = QUATERNION  # how attitudes are held within a step
+    foreign: str = ""  # its name in SciPy, where its steps are taken (motion/integration/run/scipy_loop.py)
+    # the largest h |lambda| at which it lets decay what goes as exp(lambda t): |R(-h |lambda|)| = 1; 0: not watched
+    stable: float = 0.0
+    # where in a step its interpolation errs most, on open and closed chains (tests/convergence/test_between_ends.py)
+    within: tuple[float, ...] = (0.5, 0.85)
+    collocation: Mapping[str, Any] | None = None
+    check: Method | None = None  # the method of its check run, where that is another one
+
+    @cached_property
+    def arrays(self) -> dict[str, Any]:
+        """The method as the kernel takes it (kernel/stepping.py)."""
+        rows = [(), *self.stages, self.solution, *self.extra, *self.estimates, *self.dense]
+        begin = [0]
+        for row in rows:
+            begin.append(begin[-1] + len(row))
+        return {
+            "stages": len(self.stages) + 1,
+            "extra": len(self.extra),
+            "dense_rows": len(self.dense),
+            "estimates": len(self.estimates),
+            "exponent": 1.0 / self.error_order,
+            "determined": int(self.determined),
+            "fixed": int(self.fixed),
+            "by_step": int(self.by_step),
+            "implicit": int(self.implicit),
+            "attitude": self.attitude,
+            "begin": array("i", begin),
+            "stage": array("i", [stage for row in rows for stage, _ in row]),
+            "coefficient": array("d", [c for row in rows for _, c in row]),
+            "node": array("d", self.nodes),
+            "collocation": self.collocation,
+        }

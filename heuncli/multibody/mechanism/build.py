@@ -1,0 +1,284 @@
+"""Spec -> Mechanism: names become numbers, tuples arrays, shapes mass properties; nothing is solved here."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from heuncli.base.joint_kinds import TYPES, Kind
+from heuncli.base.records import replace
+from heuncli.multibody.mechanism.couplings import Coupling
+from heuncli.multibody.mechanism.directions import unit
+from heuncli.multibody.mechanism.model import (
+    GROUND,
+    Blow,
+    Body,
+    BushingLoad,
+    Directed,
+    Elastic,
+    Joint,
+    JointLoad,
+    Load,
+    Mechanism,
+    NamedPoint,
+    PairLoad,
+    PointLoad,
+    Spread,
+    Stop,
+)
+from heuncli.multibody.stages import ANEW, Stages
+from heuncli.results.results import Array
+from heuncli.scene.expressions.programs import Expression, is_of_point
+from heuncli.scene.file_format import models as m
+from heuncli.scene.shapes.inertia import properties
+
+if TYPE_CHECKING:
+    from heuncli.scene.shapes.forms import Form
+
+
+def forms_of(spec: m.Spec, stages: Stages = ANEW) -> dict[str, Form]:
+    """The forms of the bodies that are built from shapes; stages: each is one."""
+    shapes = {name: b.shapes for name, b in spec.bodies.items() if b.shapes is not None}
+    if not shapes:
+        return {}
+    from heuncli.scene.shapes.forms import form  # 8 ms that only they are worth
+
+    return {name: stages.run(form, of, of=name) for name, of in shapes.items()}
+
+
+def build(spec: m.Spec, forms: dict[str, Form], stages: Stages = ANEW) -> Mechanism:
+    """The mechanism of a validated spec; forms: of the bodies that are built from shapes.
+
+    stages: each body and each joint is one.
+    """
+    index = {name: i for i, name in enumerate(spec.bodies)} | {"ground": GROUND}
+    joints = {name: (k, TYPES[j.kind]) for k, (name, j) in enumerate(spec.joints.items())}
+    drives = {drive.joint: drive for drive in spec.drives.values()}
+    planar = spec.space == "planar"
+    bodies = tuple(stages.run(body, b, forms.get(name), of=name) for name, b in spec.bodies.items())
+    last = max(spec.analysis.times, default=0.0)
+    made = tuple(
+        driven(stages.run(joint, j, index[j.a], index[j.b], planar, of=name), drives.get(name), last)
+        for name, j in spec.joints.items()
+    )
+    made = numbered(made)
+    loads = tuple(part for name, f in spec.forces.items() for part in parts_of(name, f, index, joints))
+    conditions = tuple(c for c in spec.analysis.conditions if isinstance(c, m.Condition))
+    conditions += tuple(b.when for b in spec.impulses.values() if b.when is not None)
+    conditions += tuple(c for s in spec.latches.values() if s.latch is not None for c in s.latch.conditions)
+    values = [*(e for load in loads for e in load.values), *(c.value for c in conditions)]
+    points = points_used(spec, values, index)
+    stops = tuple(stop(s, joints[s.joint][0]) for s in (*spec.stops.values(), *spec.latches.values()))
+    if planar:
+        told = {stop.joint for stop in stops} | coordinates_used(loads, values, joints)
+        seen = {point.body for point in points.values()}
+        told |= {joints[joint][0] for joint in coupled(spec)}
+        seen |= {index[end.body] for wheel in spec.rolling.values() for end in (wheel.wheel, wheel.on)}
+        told |= {k for k, j in enumerate(made) if not seen.isdisjoint((j.a, j.b))}
+        made = tuple(spun(j, bodies) if k not in told else j for k, j in enumerate(made))
+    couplings: tuple[Coupling, ...] = ()
+    if spec.couplings:
+        from heuncli.multibody.mechanism.build_couplings import couplings_of, loads_beside  # few scenes have them
+
+        number = {name: k for name, (k, _) in joints.items()}
+        couplings = couplings_of(spec, made, bodies, number)
+        loads += loads_beside(spec, made, bodies, number)
+    return Mechanism(
+        title=spec.title,
+        planar=planar,
+        gravity=np.array(spec.gravity),
+        bodies=bodies,
+        joints=made,
+        loads=loads,
+        blows=tuple(blow(b, index) for b in spec.impulses.values()),
+        stops=stops,
+        conditions=conditions,
+        points=points,
+        couplings=couplings,
+        impacts=spec.analysis.impacts,
+    )
+
+
+def optional(value: m.Vec | m.Matrix | None) -> Array | None:
+    """An array, or None for what was left out."""
+    return None if value is None else np.array(value, dtype=float)
+
+
+def directed(value: m.Directed[m.Vec] | None) -> Directed | None:
+    """A vector with its frame, or None."""
+    return None if value is None else Directed(np.array(value.vector), value.in_body)
+
+
+def body(b: m.Body[m.Vec, m.Matrix], shape: Form | None) -> Body:
+    """One body, its mass properties given or those of its shapes."""
+    if shape is not None:
+        mass, center, inertia = properties(shape.whole())
+    else:
+        mass, center, inertia = b.mass, np.array(b.center), np.array(b.inertia)
+    return Body(
+        name=b.name, mass=mass, center=center, inertia=inertia,
+        points={name: np.array(p) for name, p in b.points.items()},
+        position=optional(b.position), rotation=optional(b.rotation), velocity=directed(b.velocity),
+        angular_velocity=directed(b.angular_velocity), near_position=optional(b.near_position),
+        near_rotation=optional(b.near_rotation),
+    )  # fmt: skip
+
+
+def with_values(drive: m.Drive, last: float) -> m.Drive:
+    """A drive whose value is that of its coordinate; of one by its rate the integral, for a run up to `last` [s]."""
+    if not drive.by_rate:
+        return drive
+    from heuncli.scene.expressions.integrals import integral  # few scenes have them
+
+    return replace(drive, value=integral(drive.value, last), by_rate=False, from_start=True)
+
+
+def driven(joint: Joint, drive: m.Drive | None, last: float) -> Joint:
+    """A joint with its drive; last: the end of the run [s]."""
+    return joint if drive is None else replace(joint, drive=with_values(drive, last))
+
+
+def joint(j: m.Joint[str, m.Vec], a: int, b: int, planar: bool) -> Joint:
+    """One joint between two bodies, without its drive, as what it is in the plane where that was declared."""
+    axis = unit(j.axis if j.path is None else m.X)  # along a path the direction is the path's own
+    return Joint(
+        name=j.name, kind=(TYPES[j.kind].planar if planar else None) or j.kind,
+        a=a, p=np.array(j.p), b=b, q=np.array(j.q),
+        axis=axis, to_axis=unit(j.to_axis) if j.to_axis_given else axis, to_axis_given=j.to_axis_given,
+        angle=j.angle, rate=j.rate, travel=j.travel, speed=j.speed, length=j.length, tension_only=j.tension_only,
+        stiffness=(np.array(j.stiffness[0]), np.array(j.stiffness[1])) if j.stiffness is not None else None,
+        drive=None, restitution=j.restitution, bearing=j.bearing,
+        p_name=j.p_name, q_name=j.q_name, path=j.path, one_sided=j.one_sided,
+    )  # fmt: skip
+
+
+def numbered(joints: tuple[Joint, ...]) -> tuple[Joint, ...]:
+    """Joints of which those along paths have their numbers."""
+    count = itertools.count()
+    return tuple(joint if joint.path is None else replace(joint, way=next(count)) for joint in joints)
+
+
+def coupled(spec: m.Spec) -> set[str]:
+    """The joints whose coordinates are coupled."""
+    ropes = [coupling for coupling in spec.couplings.values() if coupling.type == "rope"]
+    gripped = frozenset[str]().union(*(rope.gripped for rope in ropes))
+    found = {name for name, joint in spec.joints.items() if not gripped.isdisjoint((joint.a, joint.b))}
+    return found | {joint for coupling in spec.couplings.values() for joint in coupling.joints}
+
+
+def coordinates_used(
+    loads: tuple[Load, ...], values: Sequence[Expression], joints: dict[str, tuple[int, Kind]]
+) -> set[int]:
+    """The joints in which loads act, or whose coordinates values name."""
+    acting = {load.joint for load in loads if isinstance(load, JointLoad)}
+    return acting | {joints[name][0] for e in values for name, _ in e.uses if name in joints}
+
+
+def points_used(spec: m.Spec, values: Sequence[Expression], index: dict[str, int]) -> dict[str, NamedPoint]:
+    """The points that values name, by their names there."""
+    found = {}
+    for name in dict.fromkeys(name for e in values for name, _ in e.uses if is_of_point(name)):
+        _, body, point = name.split(".")
+        owner = spec.ground.points if body == "ground" else spec.bodies[body].points
+        found[name] = NamedPoint(index[body], np.array(owner[point]), np.eye(3), np.zeros(3))
+    return found
+
+
+def spun(joint: Joint, bodies: tuple[Body, ...]) -> Joint:
+    """A pin of the plane; at the centre of a body without inertia one whose angle nothing determines or asks for."""
+    given = (joint.angle, joint.rate, joint.drive)
+    if joint.kind != "pin" or joint.to_axis_given or any(value is not None for value in given):
+        return joint
+    for end, point in ((joint.a, joint.p), (joint.b, joint.q)):
+        if end != GROUND and bodies[end].inertia[2, 2] <= 0.0 and np.array_equal(point, bodies[end].center):
+            return replace(joint, kind="spun pin")
+    return joint
+
+
+def parts_of(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> tuple[Load, ...]:
+    """An applied load: of a distributed one the parts that grow towards its one end and its other."""
+    if not isinstance(f, m.Distributed):
+        return (load(name, f, index, joints),)
+    start, end = np.array(f.from_), np.array(f.to)
+    spreads = (f.vector, Spread(start, end)), (f.to_vector, Spread(end, start))
+    return tuple(
+        PointLoad(name, "force", index[f.body], spread.center, vector, f.frame == "body", spread)
+        for vector, spread in spreads
+    )
+
+
+def load(name: str, f: m.Force, index: dict[str, int], joints: dict[str, tuple[int, Kind]]) -> Load:
+    """One applied load that is not distributed."""
+    match f:
+        case m.PointForce():
+            return PointLoad(name, "force", index[f.on.body], np.array(f.on.point), f.vector, f.frame == "body")
+        case m.Couple():
+            point = np.array(f.on.point) if f.on is not None else None
+            return PointLoad(name, "couple", index[f.body], point, f.vector, f.frame == "body")
+        case m.Actuator() | m.Spring():
+            a, b = f.from_, f.to
+            spring = (
+                (f.force, f.stiffness, f.length, f.damping) if isinstance(f, m.Spring) else (f.value, 0.0, 0.0, 0.0)
+            )
+            return PairLoad(name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), *spring)
+        case m.Bushing():
+            return bushing(name, f, index)
+        case m.Torque() | m.Motor():
+            return JointLoad(name, "torque", joints[f.joint][0], f.value)
+        case m.TurnSpring():
+            k = joints[f.joint][0]
+            if f.torque is not None:
+                return JointLoad(name, "torque", k, f.torque)
+            return JointLoad(name, "turn_spring", k, None, f.damping, stiffness=f.stiffness, angle=f.angle)
+        case m.Damper():
+            # the coefficient is that of the one motion; a joint of both gives that of the sliding apart
+            k, kind = joints[f.joint]
+            if f.law is not None:
+                return JointLoad(name, "torque", k, f.law)
+            sliding = f.coefficient if kind.motions == ("sliding",) else f.sliding or 0.0
+            return JointLoad(name, "damper", k, None, f.coefficient, sliding, 1.0)
+        case m.Friction():
+            return friction(name, f, joints[f.joint][0])
+        case m.Distributed():
+            raise TypeError("a distributed load is two loads")
+
+
+def bushing(name: str, f: m.Bushing, index: dict[str, int]) -> BushingLoad:
+    """Six springs and dampers."""
+
+    def arrays(of: m.Elastic[m.Vec]) -> Elastic:
+        return Elastic(np.array(of.stiffness), np.array(of.damping), np.array(of.preload), of.given)
+
+    a, b = f.from_, f.to
+    return BushingLoad(
+        name, index[a.body], np.array(a.point), index[b.body], np.array(b.point), np.array(f.rotation),
+        np.array(f.to_rotation), arrays(f.shift), arrays(f.turn),
+    )  # fmt: skip
+
+
+def friction(name: str, f: m.Friction, joint: int) -> JointLoad:
+    """Friction of a given size, or by what of the joint's own load presses."""
+    if f.coefficient is None:
+        of_turning, of_sliding = float(f.torque is not None), float(f.force is not None)
+        return JointLoad(name, "friction", joint, f.torque or f.force, of_turning, of_sliding, f.speed)
+    turning, speed = f.coefficient * (f.radius or 0.0), f.speed
+    if f.radius is not None:
+        return JointLoad(name, "friction", joint, None, turning, 0.0, speed, presses="whole")
+    presses: Literal["across", "ends"] = "across" if f.length is None else "ends"
+    reach = f.length or 0.0
+    return JointLoad(name, "friction", joint, None, 0.0, f.coefficient, speed, presses=presses, reach=reach)
+
+
+def blow(b: m.Blow[str, m.Vec], index: dict[str, int]) -> Blow:
+    """One impulse or impulsive couple."""
+    return Blow(
+        b.name, index[b.body], optional(b.point), np.array(b.vector), b.in_body, b.time, b.kind, b.when, b.every
+    )  # fmt: skip
+
+
+def stop(s: m.Stop[str], joint: int) -> Stop:
+    """A stop or a latch of a joint's coordinate."""
+    return Stop(s.name, joint, s.quantity, s.low, s.high, s.restitution, s.latch)

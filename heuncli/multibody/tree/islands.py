@@ -1,0 +1,116 @@
+"""Islands: the closed loops that share bodies. What one loop carries depends on the others of its island, on no more.
+
+A self-stress lives in one island, so each is looked at alone and measured by its own length.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.records import replace
+from heuncli.kernel.choose import scene as kernel
+from heuncli.multibody.mechanism.couplings import CoupledRow
+from heuncli.multibody.mechanism.model import GROUND
+from heuncli.multibody.tree.layout import Island, Layout
+from heuncli.multibody.tree.rows import IslandRow, table_of
+from heuncli.results.results import Array
+
+
+def with_islands(layout: Layout) -> Layout:
+    """The layout with its islands, for the kernel, too, which measures rows and freedoms by them."""
+    found = islands(layout)
+    measure = np.zeros(layout.answer_count)
+    rows = []
+    for island in found:
+        measure[island.freedoms] = np.where(island.turns, 1.0 / island.length, 1.0)
+        layout.tables["closures"]["measure"][island.rows] = np.where(island.couples, island.length, 1.0)
+        at = len(layout.indices)
+        layout.indices.extend(island.rows.tolist() + island.freedoms.tolist())
+        n = len(island.rows)
+        rows.append(IslandRow(rows=at, row_count=n, freedoms=at + n, freedom_count=len(island.freedoms)))
+    tables = layout.tables | {"islands": table_of(kernel.Island, rows)}
+    return replace(layout, islands=tuple(found), measure=measure, tables=tables)
+
+
+def islands(layout: Layout) -> list[Island]:
+    """All islands, in the order of their first rows."""
+    loops = {k: loop_of(layout, k) for k in dict.fromkeys((*layout.spanning.cut, *layout.rows))}
+    group = {k: k for k in loops}
+
+    def root(k: int) -> int:
+        while group[k] != k:
+            group[k] = group[group[k]]
+            k = group[k]
+        return k
+
+    through: dict[int, int] = {}  # body -> a cut joint whose loop it is in
+    for k, loop in loops.items():
+        for i in loop:
+            group[root(k)] = root(through.setdefault(i, k))
+    found: dict[int, tuple[list[int], set[int]]] = {}
+    for r, k in enumerate(layout.rows):
+        rows, bodies = found.setdefault(root(k), ([], set()))
+        rows.append(r)
+        bodies |= loops[k]
+    return [_island(layout, np.array(rows), sorted(bodies)) for rows, bodies in found.values()]
+
+
+def loop_of(layout: Layout, joint: int) -> set[int]:
+    """Bodies (tree order) around the loop of a cut joint: on the path to one of its ends and not to the other."""
+    mechanism = layout.mechanism
+    if joint >= len(mechanism.joints):
+        return set().union(
+            *(loop_of_coupling(layout, row) for row in mechanism.couplings[joint - len(mechanism.joints)].rows)
+        )
+    cut = mechanism.joints[joint]
+    return set(layout.path(cut.a)) ^ set(layout.path(cut.b))
+
+
+def loop_of_coupling(layout: Layout, row: CoupledRow) -> set[int]:
+    """Bodies whose freedoms a coupling's row may move: of each of its parts those of a loop through its two ends."""
+    return {i for part in row.parts for i in set(layout.path(part.a)) ^ set(layout.path(part.b))}
+
+
+def _island(layout: Layout, rows: Array, bodies: list[int]) -> Island:
+    freedoms: list[int] = []
+    turns: list[bool] = []
+    for body in layout.bodies[bodies]:
+        if body["ball"]:
+            freedoms += range(body["answer_at"], body["answer_at"] + 3)
+            turns += [True] * 3
+        own = layout.tables["freedoms"][body["first_freedom"] : body["end_freedom"]]
+        own = own[own["driven"] == 0]
+        freedoms += own["answer_at"].tolist()
+        turns += (own["kind"] != kernel.SHIFT).tolist()
+    couples = np.array([is_couple(layout, r) for r in rows.tolist()])
+    length = mean_lever(layout, {layout.rows[r] for r in rows.tolist()})
+    return Island(rows, np.array(freedoms, dtype=int), couples, np.array(turns, dtype=bool), length)
+
+
+def is_couple(layout: Layout, r: int) -> bool:
+    """Whether the load of a closure row is a couple, of a sum all of its parts'."""
+    row = layout.tables["closures"][r]
+    parts = layout.tables["parts"][row["part"] : row["part"] + row["part_count"]]
+    kinds = parts["kind"] if row["kind"] == kernel.SUM else row["kind"]
+    return bool(np.all(np.isin(kinds, (kernel.DOT, kernel.TURN))))
+
+
+def mean_lever(layout: Layout, joints: Collection[int]) -> float:
+    """Mean distance of the joints' points from the centres of their bodies [m]; without any, the scene's size.
+
+    Points on one axis, seen along it, are apart by rounding: measured by that, rounding of their rows held a turn.
+    """
+    bodies = layout.mechanism.bodies
+    count = len(layout.mechanism.joints)
+    of = [layout.mechanism.joints[k] for k in joints if k < count]
+    parts = [
+        part for k in joints if k >= count for row in layout.mechanism.couplings[k - count].rows for part in row.parts
+    ]
+    places = [(b, p) for j in of for b, p in ((j.a, j.p), (j.b, j.q))]
+    places += [(b, np.asarray(p)) for part in parts for b, p in part.places]
+    arms = [p - bodies[b].center for b, p in places if b != GROUND]
+    mean = float(np.mean([np.sqrt(a @ a) for a in arms])) if arms else 0.0
+    return mean if mean > tolerances.GAP_ROUNDING * layout.size else layout.size

@@ -1,0 +1,192 @@
+"""Where the joints stand in the assembled mechanism: coordinates, rates, reference attitudes, directions."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Problem, SolveError
+from heuncli.base.joint_kinds import JOINTS, Direction
+from heuncli.base.records import record
+from heuncli.multibody.mechanism.model import GROUND, Assembly, Joint, Mechanism
+from heuncli.multibody.tree.spanning import Spanning
+from heuncli.results.results import Array
+from heuncli.scene.expressions.paths import Path
+from heuncli.scene.shapes.rotations import about, cross_rows, perpendicular, to_quaternion, turn_onto
+
+Z = np.array([0.0, 0.0, 1.0])
+
+
+@record
+class JointStart:
+    """Where a joint stands at the start: R_ref (to axes -> from axes at angle zero), angle, rate, travel, speed.
+
+    angle of a universal: about its first axis (`first_angle`); its coordinates are counted from the start.
+    """
+
+    R_ref: Array
+    angle: float
+    rate: float
+    travel: float
+    speed: float
+
+
+@record
+class GivenTree:
+    """A tree that was chosen for a larger scene, and where its joints stand; starts: None, as the start has them."""
+
+    spanning: Spanning
+    starts: tuple[JointStart, ...] | None = None
+
+
+def distance(start: Assembly, joint: Joint) -> float:
+    """The distance of a joint's two points at the start [m]."""
+    xa, Ra, _, _ = pose(start, joint.a)
+    xb, Rb, _, _ = pose(start, joint.b)
+    D = xb + Rb @ joint.q - xa - Ra @ joint.p
+    return math.sqrt(float(D @ D))
+
+
+def joint_start(mechanism: Mechanism, start: Assembly, joint: Joint) -> JointStart:
+    """Coordinates of a joint in the assembled mechanism, and its reference attitude, where its angle is zero."""
+    xa, Ra, va, wa = pose(start, joint.a)
+    xb, Rb, vb, wb = pose(start, joint.b)
+    R = Ra.T @ Rb
+    kind = JOINTS[joint.kind]
+    if kind.turns_alike:
+        require_bend(joint, R)
+    if not kind.turns and "travel" not in kind.coordinates:
+        return JointStart(R, 0.0, 0.0, 0.0, 0.0)
+    n = joint.axis
+    if joint.path is not None:
+        return joint_start_on_path(joint, joint.path, start, R)
+    D = Ra.T @ (xb + Rb @ joint.q - xa) - joint.p
+    rate = float((Ra @ (Z if kind.turns == ("z",) else n)) @ (wb - wa))
+    v = vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, Rb @ joint.q + xb - xa)
+    travel, speed = float(D @ n), float((Ra @ n) @ v)
+    if "angle" not in kind.coordinates:
+        return JointStart(R, first_angle(joint, R) if len(kind.turns) == 2 else 0.0, rate, travel, speed)
+    near = joint.angle
+    if joint.drive is not None and joint.drive.quantity == "angle" and not joint.drive.from_start:
+        near = joint.drive.value.derivatives(0.0)[0]
+    if joint.to_axis_given or (joint.drive is not None and joint.drive.zero_assembled):
+        near = near or 0.0
+        return JointStart(about(n, -near) @ R, near, rate, travel, speed)
+    near = near if near is not None else middle_of_limits(mechanism, joint)
+    return JointStart(np.eye(3), unwrapped(axial_angle(R, n), near), rate, travel, speed)
+
+
+def joint_start_on_path(joint: Joint, path: Path, start: Assembly, R: Array) -> JointStart:
+    """Where the point of a path stands along it: on the branch that is held or driven to, else at the nearest place.
+
+    Raises SolveError where nothing tells on which of several branches.
+    """
+    xa, Ra, va, wa = pose(start, joint.a)
+    xb, Rb, vb, wb = pose(start, joint.b)
+    D = xb + Rb @ joint.q - xa
+    place, held = Ra.T @ D - joint.p, joint.travel
+    if joint.drive is not None and not joint.drive.from_start and not joint.drive.zero_assembled:
+        held = joint.drive.value.derivatives(0.0)[0]
+    if held is None:
+        travel = float(path.nearest(place))
+        require_one_branch(joint, path, place)
+    else:
+        travel = path.near(place, held)
+        if math.isclose(travel, held, abs_tol=tolerances.SAME_VALUE):
+            travel = held
+    slope = path.at(travel)[1]
+    v = Ra.T @ (vb + cross_rows(wb, Rb @ joint.q) - va - cross_rows(wa, D))
+    turn = float((Ra @ Z) @ (wb - wa))
+    return JointStart(R, 0.0, turn, travel, float(slope @ v) / float(slope @ slope))
+
+
+def require_one_branch(joint: Joint, path: Path, place: Array) -> None:
+    """Raise SolveError where a path crosses or touches itself at a place on it: each branch would be another motion."""
+    found = path.branches(place, tolerances.SAME_PLACE * path.greatest[0])
+    if len(found) > 1:
+        where = " and ".join(f"{s:.6g}" for s in found[:3])
+        message = (
+            f"joint {joint.name} starts where its path meets itself, at travel {where}: on which branch is not told"
+        )
+        hint = f"initial: {{travel: {found[0]:.6g}}} says which"
+        raise SolveError(Problem("path-branch", message, None, hint, f"joints.{joint.name}"))
+
+
+def require_bend(joint: Joint, R: Array) -> None:
+    """Raise SolveError where two shafts that turn alike start bent by a right angle or more."""
+    cosine = float(joint.axis @ R @ joint.to_axis)
+    if cosine <= tolerances.PARALLEL:
+        bend = math.degrees(math.acos(max(cosine, -1.0)))
+        message = f"joint {joint.name} (cv): its two shafts start bent by {bend:.4g} deg, and turn alike only below 90"
+        hint = "axis and to_axis point the same way along the line of shafts: turn one of them round, or bend it less"
+        raise SolveError(Problem("cv-bend", message, None, hint, f"joints.{joint.name}"))
+
+
+def first_angle(joint: Joint, R: Array) -> float:
+    """Of a universal: by how much its second axis has turned about the first, in (-pi, pi].
+
+    From where it stands while the axes of the two bodies agree, as a pin's angle is counted; at the start, if it then
+    lies along the first axis.
+    """
+    n, there, now = joint.axis, joint.to_axis, R @ joint.to_axis
+    before = there - (there @ n) * n
+    if float(np.sqrt(before @ before)) < tolerances.PARALLEL:
+        return 0.0
+    return math.atan2(float(n @ cross_rows(before, now)), float(before @ now))
+
+
+def middle_of_limits(mechanism: Mechanism, joint: Joint) -> float:
+    """The angle about which turns are counted where none is given: amid what stops on both sides leave, else 0.
+
+    One limit alone leaves no middle: there a turn more or less would put any start within it.
+    """
+    stops = [s for s in mechanism.stops if s.quantity == "angle" and mechanism.joints[s.joint] is joint]
+    low = max((s.low for s in stops if s.low is not None), default=None)
+    high = min((s.high for s in stops if s.high is not None), default=None)
+    return 0.5 * (low + high) if low is not None and high is not None else 0.0
+
+
+def joint_frame(joint: Joint, direction: Direction) -> Array:
+    """A direction of the joint in `from` axes: its axis, or one of the two across it."""
+    if direction == "axis":
+        return joint.axis
+    if direction == "z":
+        return Z
+    if direction == "across":
+        return cross_rows(Z, joint.axis)
+    e, f = perpendicular(joint.axis)
+    return e if direction == "first" else f
+
+
+def to_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
+    """A direction of the joint that is fixed in `to`, in `to` axes: its second axis, or what one of `from` was."""
+    if direction == "to_axis":
+        return joint.to_axis
+    return np.asarray(R_ref.T @ joint_frame(joint, direction))
+
+
+def bent_direction(joint: Joint, R_ref: Array, direction: Direction) -> Array:
+    """What a direction of `from` becomes in `to`, its axes, where the bend that turns axis onto to_axis turns it."""
+    bend = turn_onto(joint.axis, R_ref @ joint.to_axis)
+    return np.asarray(R_ref.T @ bend @ joint_frame(joint, direction))
+
+
+def unwrapped(angle: float, near: float) -> float:
+    """The angle of the same position that is nearest to `near`."""
+    return angle + 2.0 * math.pi * round((near - angle) / (2.0 * math.pi))
+
+
+def axial_angle(R: Array, axis: Array) -> float:
+    """Angle of a rotation that is one about `axis`, in (-pi, pi]."""
+    q = to_quaternion(R)
+    cosine, sine = float(q[0]), float(q[1:] @ axis)
+    return 2.0 * (math.atan2(sine, cosine) if cosine >= 0.0 else math.atan2(-sine, -cosine))
+
+
+def pose(start: Assembly, body: int) -> tuple[Array, Array, Array, Array]:
+    """Position, rotation, velocity, angular velocity of a body, or of the ground."""
+    if body == GROUND:
+        return np.zeros(3), np.eye(3), np.zeros(3), np.zeros(3)
+    return start.position[body], start.rotation[body], start.velocity[body], start.angular_velocity[body]

@@ -1,0 +1,47 @@
+"""With what curves are drawn: colours that the colour-blind tell apart (Okabe and Ito, 2008), dashes beside them.
+
+The colours are dark enough on white; with the dashes and letters a picture can be read in black and white, too.
+"""
+
+from __future__ import annotations
+
+from heuncli.base.named_tuples import NamedTuple
+
+BLACK, GREY, DIM, GRID, FAINT, WHITE = "#000000", "#444444", "#888888", "#c4c4c4", "#e6e6e6", "#ffffff"
+
+
+class Pen(NamedTuple):
+    """A colour, a dash (lengths of strokes and gaps [pixels]), the letter in its place, and the code of terminals."""
+
+    colour: str
+    dash: tuple[float, ...]
+    letter: str
+    code: str
+
+
+PENS = (
+    Pen("#0072b2", (), "a", "34"),
+    Pen("#d55e00", (7.0, 3.0), "b", "31"),
+    Pen("#007a5a", (2.0, 2.5), "c", "32"),
+    Pen("#aa3377", (9.0, 3.0, 2.0, 3.0), "d", "35"),
+    Pen("#8a6d00", (4.0, 2.0), "e", "33"),
+    Pen("#000000", (12.0, 4.0), "f", "39"),
+    Pen("#2a9fd6", (12.0, 3.0, 2.0, 3.0, 2.0, 3.0), "g", "36"),
+    Pen("#666666", (1.5, 3.0), "h", "90"),
+)
+
+
+def pen(number: int) -> Pen:
+    """The pen of a number; beyond the last they begin anew."""
+    return PENS[number % len(PENS)]
+
+
+def ink(number: int | None) -> str:
+    """The colour of the pen of a number; None: black."""
+    return BLACK if number is None else pen(number).colour
+
+
+def mixed(colour: str, share: float) -> str:
+    """A colour with white: so much of it."""
+    parts = (int(colour[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(255.0 + share * (part - 255.0)):02x}" for part in parts)

@@ -1,0 +1,45 @@
+"""The forms in which load cases are written, a row each: a new one is a module of this folder and a row here.
+
+A module has `written(cases, names)`, the text in pieces; and `notes(cases, names)` where the user has to know more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from importlib import import_module
+from typing import Any
+
+from heuncli.analyses.load_cases.model import LoadCases
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.output.fe_decks.naming import DeckNames
+
+
+class Deck(NamedTuple):
+    """A form: the module that writes it, and whether it knows forces alone, as decks of static loads do."""
+
+    file: str
+    static: bool = True
+
+    def written(self, cases: LoadCases, names: DeckNames) -> Iterable[str]:
+        """The text in pieces."""
+        pieces: Iterable[str] = self._module.written(cases, names)
+        return pieces
+
+    def notes(self, cases: LoadCases, names: DeckNames) -> list[str]:
+        """What the user has to do that no card does, in sentences."""
+        own: Callable[[LoadCases, DeckNames], list[str]] | None = getattr(self._module, "notes", None)
+        return own(cases, names) if own is not None else []
+
+    @property
+    def _module(self) -> Any:
+        return import_module(f"heuncli.output.fe_decks.{self.file}")
+
+
+DECKS = {
+    "csv": Deck("as_csv", static=False),
+    "json": Deck("as_json", static=False),
+    "ansys": Deck("ansys"),
+    "nastran": Deck("nastran"),
+    "calculix": Deck("calculix"),
+    "abaqus": Deck("abaqus"),
+}

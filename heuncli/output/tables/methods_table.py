@@ -1,0 +1,31 @@
+"""The list of methods of integration, as a table and as plain data for JSON."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from heuncli.base.method_rows import AUTO, DEFAULT, METHODS
+from heuncli.output.tables.text_table import TextColumn, TextTable
+
+HEADING = "METHODS  of integration, for analysis: {method: NAME} and --method NAME"
+COLUMNS = tuple(
+    TextColumn(head, "point" if head == "order" else "left")
+    for head in ("name", "order", "kind", "steps", "attitude", "what for")
+)
+NOTES = (
+    f"{AUTO}, the default, chooses by the scene and by what the run meets: {DEFAULT} where nothing speaks against it.",
+    "steps: adaptive ones follow analysis: {tolerance: 1e-9}; fixed ones are given, analysis: {step: 0.001}.",
+    "attitude: in what numbers a body's attitude is held within a step. SciPy's are independent checks.",
+)
+
+
+def table() -> TextTable:
+    """A row a method."""
+    rows = tuple((m.name, str(m.order), m.kind, m.steps, m.attitude, m.purpose) for m in METHODS)
+    return TextTable(HEADING, COLUMNS, rows, NOTES)
+
+
+def block() -> dict[str, Any]:
+    """The methods as plain data for JSON: the default, and a mapping for each."""
+    keys = ("name", "order", "kind", "steps", "attitude", "purpose")
+    return {"default": AUTO, "methods": [{key: getattr(m, key) for key in keys} for m in METHODS]}

@@ -1,0 +1,262 @@
+"""Which quantities the tables show, under which heading, with which note on each thing.
+
+A plan is one table of the report: of one kind of results it takes the named quantities, in their order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.results.results import Results
+from heuncli.results.results_schema import RESULTANTS, STRESSES
+from heuncli.study.quantities.digits import OPEN, OPEN_NOTE
+from heuncli.study.quantities.labels import Labels
+
+POINTS = ("the origin", "the point")
+NO_AXIS = ("none", "none: there is no force, so no axis")
+
+
+class TablePlan(NamedTuple):
+    """How a kind of results becomes a block: the quantities in their order, and the text about it.
+
+    `only` takes one name of the kind. What is not `lasting` (a line in space) has no extremes: it is shown at instants.
+    `missing`: what stands for nan, and the note that explains it. A `detail` is shown to those who name its report.
+    """
+
+    key: str
+    kind: str
+    what: str
+    quantities: tuple[str, ...]
+    heading: Callable[[Results, Labels], str]
+    note: Callable[[str, Labels], str] = lambda name, labels: ""
+    only: str | None = None
+    lasting: bool = True
+    missing: tuple[str, str] = (OPEN, OPEN_NOTE)
+    detail: bool = False
+
+    @property
+    def of_foundation(self) -> bool:
+        """Whether it shows the foundation's total with its supports and elements."""
+        return self.kind == "foundation" and self.only is None
+
+
+def _about(results: Results, labels: Labels) -> str:
+    unit, size = labels.units.of("m")
+    about = size * np.asarray(results.foundation.get("about", (0.0, 0.0, 0.0))) + 0.0
+    place = f"({', '.join(f'{component:.6g}' for component in about)}) {unit}"
+    return f"{labels.about} = {place}" if labels.about else f"{POINTS[bool(about.any())]} {place}"
+
+
+def _axes(results: Results) -> str:
+    """The axes in which joint loads are told."""
+    told = results.model.get("axes")
+    return f'axes of the "{told}" body' if told else "world axes"
+
+
+def _joint_note(name: str, labels: Labels) -> str:
+    info = labels.joints.get(name)
+    return f"{info.type}, {info.from_} → {info.to}" if info else ""
+
+
+def _force_note(name: str, labels: Labels) -> str:
+    info = labels.forces.get(name)
+    return (f"{info.type} on {info.joint}" if info.joint else info.type) if info else ""
+
+
+def _stop_note(name: str, labels: Labels) -> str:
+    info = labels.stops.get(name)
+    if info is None:
+        return ""
+    unit, size = labels.units.of("rad" if info.coordinate.endswith(".angle") else "m")
+    if info.latch:
+        at = f" at {size * info.at:.6g} {unit}" if isinstance(info.at, float) else f" at the stop {info.at}"
+        return f"latch, {info.coordinate}{at if info.at is not None else ''}"
+    limits = (("from", info.low), ("to", info.high))
+    told = [f"{word} {size * limit:.6g}" for word, limit in limits if limit is not None]
+    return f"{info.coordinate} {' '.join(told)} {unit}"
+
+
+def _exerted(labels: Labels) -> str:
+    """What the stops of a scene exert."""
+    turning = {info.coordinate.endswith(".angle") for info in labels.stops.values()}
+    return "force or moment" if len(turning) != 1 else "moment" if True in turning else "force"
+
+
+def _section_note(name: str, labels: Labels) -> str:
+    info = labels.sections.get(name)
+    return f"{info.body}; e1 = {info.first_axis}; moments about {info.about}" if info else ""
+
+
+def _foundation_note(name: str, labels: Labels) -> str:
+    kind, _, own = name.partition(" ")
+    if kind == "element" and own in labels.stops:
+        return ("" if labels.stops[own].latch else "stop, ") + _stop_note(own, labels)
+    notes = {"support": _joint_note, "element": _force_note}
+    return notes[kind](own, labels) if kind in notes else ""
+
+
+FOUNDATION = TablePlan(
+    "foundation",
+    "foundation",
+    "",
+    ("force", "moment"),
+    lambda results, labels: (
+        f"FOUNDATION  force and moment ON the ground, world axes, moment about {_about(results, labels)}"
+    ),
+    _foundation_note,
+)
+MASS_EFFECT = TablePlan(
+    "foundation",
+    "foundation",
+    "",
+    ("force", "moment_orbital", "moment_spin"),
+    lambda results, labels: (
+        "MASS EFFECT  F = Σ m ẍ, moments the rates of Σ m x × ẋ (orbital) and Σ I σ (spin),"
+        f" world axes, about {_about(results, labels)}"
+    ),
+    only="mass_effect",
+    detail=True,
+)
+AXIS = TablePlan(
+    "foundation",
+    "foundation",
+    "",
+    ("point", "direction", "pitch"),
+    lambda results, labels: "CENTRAL AXIS  of the foundation's wrench: its point nearest the moment's, world axes",
+    only="axis",
+    lasting=False,
+    missing=NO_AXIS,
+    detail=True,
+)
+JOINTS = TablePlan(
+    "joints",
+    "joints",
+    "joint",
+    ("force", "moment", "axial", "radial", "tilting", "tension", "torque", "pressure", "drive"),
+    lambda results, labels: (
+        f'JOINTS  what "from" exerts ON "to" (drive, friction apart), {_axes(results)}, moment about the "to" point'
+    ),
+    _joint_note,
+)
+STOPS = TablePlan(
+    "joints",
+    "stops",
+    "stop",
+    ("force", "moment"),
+    lambda results, labels: f'STOPS  {_exerted(labels)} ON "to", along the coordinate that is limited; 0 where free',
+    _stop_note,
+)
+COUPLED = (
+    *("normal", "friction", "along", "aside", "grip", "force", "moment", "contact", "pressure_angle"),
+    *("radial", "axial", "torque", "efficiency", "tight", "slack", "tension", "last_tension"),
+)
+COUPLINGS = TablePlan(
+    "joints",
+    "couplings",
+    "coupling",
+    COUPLED,
+    lambda results, labels: "COUPLINGS  the load that each carries",
+)
+SECTIONS = TablePlan(
+    "sections",
+    "sections",
+    "section",
+    (*RESULTANTS, *STRESSES),
+    lambda results, labels: "SECTIONS  the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1",
+    _section_note,
+)
+ENERGY = TablePlan(
+    "energy",
+    "energy",
+    "",
+    ("kinetic", "potential", "work"),
+    lambda results, labels: "ENERGY  potential from the world's origin; kinetic + potential − work is constant",
+)
+PLANS = (
+    TablePlan(
+        "motion",
+        "bodies",
+        "body",
+        ("center", "center_velocity", "center_acceleration", "angular_velocity", "angular_acceleration"),
+        lambda results, labels: "MOTION  of the centres of mass, and angular velocity of the bodies, world axes",
+    ),
+    TablePlan(
+        "motion",
+        "coordinates",
+        "joint",
+        ("angle", "rate", "travel", "speed", "acceleration", "angular_acceleration"),
+        lambda results, labels: 'COORDINATES  of the joints, of "to" against "from"',
+        _joint_note,
+    ),
+    TablePlan(
+        "points",
+        "points",
+        "point",
+        ("position", "velocity", "acceleration"),
+        lambda results, labels: "POINTS  world axes",
+    ),
+    FOUNDATION,
+    MASS_EFFECT,
+    AXIS,
+    JOINTS,
+    STOPS,
+    COUPLINGS,
+    SECTIONS,
+    TablePlan(
+        "forces",
+        "forces",
+        "force",
+        ("value", "length", "angle", "shift", "turn", "force", "moment", "rate", "power"),
+        lambda results, labels: (
+            "FORCES  value, length of its line, angle of a turn spring, their rate, power put in"
+            + ("; of a bushing in its own axes" if any("shift" in own for own in results.forces.values()) else "")
+        ),
+        _force_note,
+    ),
+    ENERGY,
+)
+# What a blow does, each table under its instant and what struck: of impulses the same tables as of loads.
+IMPULSES = (
+    TablePlan(
+        "bodies",
+        "bodies",
+        "body",
+        ("center_velocity_jump", "angular_velocity_jump"),
+        lambda results, labels: "BODIES  jumps of the centre's velocity and of the angular velocity, world axes",
+    ),
+    FOUNDATION._replace(
+        heading=lambda results, labels: (
+            f"FOUNDATION  impulse and its moment ON the ground, world axes, moment about {_about(results, labels)}"
+        )
+    ),
+    AXIS._replace(
+        heading=lambda results, labels: (
+            "CENTRAL AXIS  of the foundation's impulse: its point nearest the moment's, world axes"
+        ),
+        missing=("none", "none: there is no impulse, so no axis"),
+    ),
+    JOINTS._replace(
+        heading=lambda results, labels: (
+            f'JOINTS  impulse that "from" exerts ON "to" (drive apart), {_axes(results)}, moment about the "to" point'
+        )
+    ),
+    STOPS._replace(
+        key="stops",
+        heading=lambda results, labels: 'STOPS  impulse ON "to", along the coordinate that is limited',
+    ),
+    COUPLINGS._replace(key="couplings", heading=lambda results, labels: "COUPLINGS  the impulse that each carries"),
+    SECTIONS._replace(
+        quantities=RESULTANTS,
+        heading=lambda results, labels: (
+            "SECTIONS  impulse of the piece beyond the cut ON the part before it; N > 0 tension; e2 = n × e1"
+        ),
+    ),
+    ENERGY._replace(
+        kind="",
+        quantities=("energy_before", "energy_after", "energy_jump"),
+        heading=lambda results, labels: "ENERGY  kinetic, before and after the blow",
+    ),
+)

@@ -1,0 +1,599 @@
+"""The file format, version 1: the whole of it as classes of entries, keys as users write them, values read to SI.
+
+What judges a kind is made when the first entry of it is read: a scene pays for what it has. Reading here looks
+at one value at a time; what concerns several of them together stands in `rules`, the meaning in `resolve`. Nothing
+outside `spec` sees these classes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal
+
+from heuncli.base.errors import Finding
+from heuncli.base.named_tuples import NamedTuple
+from heuncli.scene.file_format.entries import Entry, Tag, key
+from heuncli.scene.file_format.fields import (
+    FORM,
+    Acceleration,
+    AnEnd,
+    Angle,
+    AngleInTime,
+    AngleLimits,
+    AngularImpulse,
+    Anything,
+    Area,
+    AreaMoment,
+    BodyOrEnd,
+    Count,
+    Damping,
+    Direction,
+    Either,
+    EitherInTime,
+    Expected,
+    ForceInTime,
+    FormatVersion,
+    Impulse,
+    Inertia,
+    InParts,
+    Length,
+    LengthInTime,
+    LengthLimits,
+    LineForceInTime,
+    Mass,
+    MomentInTime,
+    Number,
+    OwnDamperForce,
+    OwnDamperTorque,
+    OwnSpringForce,
+    OwnTurnTorque,
+    PathPart,
+    PointOrName,
+    Position,
+    Pressure,
+    Rate,
+    RateInTime,
+    Stiffness,
+    StrikeInTime,
+    Switch,
+    Tensor,
+    Time,
+    TruthInTime,
+    TurningDamping,
+    TurningStiffness,
+    Velocity,
+    VelocityInTime,
+)
+from heuncli.scene.file_format.format_couplings import COUPLINGS, CouplingEntry
+from heuncli.scene.file_format.format_elastic import BushingEntry, MotorEntry
+from heuncli.scene.file_format.format_rolling import RollingEntry
+from heuncli.scene.file_format.format_shapes import Orientation, ShapeEntry
+from heuncli.scene.file_format.words import SEVERAL
+
+Frame = Literal["world", "body"]
+Report = Literal[
+    "motion", "points", "foundation", "joints", "sections", "forces", "energy", "impulses", "events", "shares"
+]  # fmt: skip
+Points = dict[str, Position]
+
+
+class GroundEntry(Entry):
+    """What does not move."""
+
+    points: Points = key(default_factory=dict)
+
+
+InertiaForms = Annotated[
+    Annotated[Inertia, Tag("single")]
+    | Annotated[tuple[Inertia, Inertia, Inertia], Tag("list")]
+    | Annotated[Tensor, Tag("rows")],
+    FORM,
+]
+
+
+class NearEntry(Entry):
+    """Where the assembly starts to look."""
+
+    position: Position | None = None
+    orientation: Orientation | None = None
+
+
+class VelocityInFrame(Entry):
+    vector: tuple[Velocity, Velocity, Velocity]
+    frame: Frame = "world"
+
+
+class RateInFrame(Entry):
+    vector: tuple[Rate, Rate, Rate]
+    frame: Frame = "world"
+
+
+class PieceEntry(Entry):
+    """What a cut separates from a body without shapes."""
+
+    mass: Mass
+    center: Position
+    inertia: InertiaForms
+    deviation: tuple[Inertia, Inertia, Inertia] | None = None
+
+
+class BodyEntry(Entry):
+    mass: Mass | None = None
+    center: Position | None = None
+    inertia: InertiaForms | None = None
+    deviation: tuple[Inertia, Inertia, Inertia] | None = None
+    shapes: Annotated[list[ShapeEntry], InParts()] | None = None
+    points: Points = key(default_factory=dict)
+    position: Position | None = None
+    orientation: Orientation | None = None
+    near: NearEntry | None = None
+    velocity: (
+        Annotated[
+            Annotated[tuple[Velocity, Velocity, Velocity], Tag("list")] | Annotated[VelocityInFrame, Tag("mapping")],
+            FORM,
+        ]
+        | None
+    ) = None
+    angular_velocity: (
+        Annotated[Annotated[tuple[Rate, Rate, Rate], Tag("list")] | Annotated[RateInFrame, Tag("mapping")], FORM] | None
+    ) = None
+    piece: PieceEntry | None = None
+
+
+class StiffnessParts(Entry):
+    force: (
+        Annotated[
+            Annotated[Stiffness, Tag("single")] | Annotated[tuple[Stiffness, Stiffness, Stiffness], Tag("list")], FORM
+        ]
+        | None
+    ) = None
+    moment: (
+        Annotated[
+            Annotated[TurningStiffness, Tag("single")]
+            | Annotated[tuple[TurningStiffness, TurningStiffness, TurningStiffness], Tag("list")],
+            FORM,
+        ]
+        | None
+    ) = None
+
+
+class AnyJoint(Entry):
+    """What all joints have."""
+
+    from_: AnEnd = key(alias="from")
+    to: AnEnd
+    stiffness: (
+        Annotated[Annotated[Stiffness, Tag("single")] | Annotated[StiffnessParts, Tag("mapping")], FORM] | None
+    ) = None
+
+
+class BearingEntry(Entry):
+    diameter: Length
+    width: Length
+
+
+class Bearing(AnyJoint):
+    """A joint that may have a bearing."""
+
+    bearing: BearingEntry | None = None
+
+
+class Turning(Entry):
+    angle: Angle | None = None
+    rate: Rate | None = None
+
+
+class Sliding(Entry):
+    travel: Length | None = None
+    speed: Velocity | None = None
+
+
+class TurningAndSliding(Turning, Sliding):
+    """Held start values of a cylinder, which turns and slides."""
+
+
+class BallJoint(Bearing):
+    type: Literal["ball"]
+
+
+class PinJoint(Bearing):
+    type: Literal["pin"]
+    axis: Direction
+    to_axis: Direction | None = None
+    initial: Turning | None = None
+
+
+class SlideJoint(AnyJoint):
+    type: Literal["slide"]
+    axis: Direction
+    to_axis: Direction | None = None
+    initial: Sliding | None = None
+
+
+class CylinderJoint(Bearing):
+    type: Literal["cylinder"]
+    axis: Direction
+    to_axis: Direction | None = None
+    initial: TurningAndSliding | None = None
+
+
+class UniversalJoint(AnyJoint):
+    type: Literal["universal"]
+    axis: Direction
+    to_axis: Direction
+
+
+class ConstantVelocityJoint(AnyJoint):
+    type: Literal["cv"]
+    axis: Direction
+    to_axis: Direction | None = None
+
+
+class WeldJoint(AnyJoint):
+    type: Literal["weld"]
+
+
+class LineJoint(Bearing):
+    type: Literal["line"]
+    axis: Direction
+
+
+class PlaneJoint(AnyJoint):
+    type: Literal["plane"]
+    normal: Direction
+
+
+class CurveJoint(Bearing):
+    type: Literal["curve"]
+    x: PathPart = 0.0
+    y: PathPart = 0.0
+    z: PathPart = 0.0
+    radius: Length | None = None
+    normal: Direction | None = None
+    one_sided: Switch = False
+    restitution: Number | None = None
+    initial: Sliding | None = None
+
+
+class RodJoint(AnyJoint):
+    type: Literal["rod"]
+    length: Length | None = None
+    tension_only: Switch = False
+    restitution: Number | None = None
+
+
+JointEntry = (
+    BallJoint | PinJoint | SlideJoint | CylinderJoint | UniversalJoint | ConstantVelocityJoint | WeldJoint | LineJoint
+    | PlaneJoint | CurveJoint | RodJoint
+)  # fmt: skip
+JOINTS: dict[str, type[JointEntry]] = {
+    "ball": BallJoint,
+    "pin": PinJoint,
+    "slide": SlideJoint,
+    "cylinder": CylinderJoint,
+    "universal": UniversalJoint,
+    "cv": ConstantVelocityJoint,
+    "weld": WeldJoint,
+    "line": LineJoint,
+    "plane": PlaneJoint,
+    "curve": CurveJoint,
+    "rod": RodJoint,
+}
+
+
+class DriveEntry(Entry):
+    joint: str
+    angle: AngleInTime | None = None
+    travel: LengthInTime | None = None
+    length: LengthInTime | None = None
+    rate: RateInTime | None = None
+    speed: VelocityInTime | None = None
+    zero: Literal["assembled"] | None = None
+
+
+class ForceEntry(Entry):
+    type: Literal["force"]
+    on: AnEnd
+    vector: tuple[ForceInTime, ForceInTime, ForceInTime]
+    frame: Frame = "world"
+
+
+class CoupleEntry(Entry):
+    type: Literal["couple"]
+    on: BodyOrEnd
+    vector: tuple[MomentInTime, MomentInTime, MomentInTime]
+    frame: Frame = "world"
+
+
+class TorqueEntry(Entry):
+    type: Literal["torque"]
+    joint: str
+    value: EitherInTime
+
+
+class ActuatorEntry(Entry):
+    type: Literal["actuator"]
+    from_: AnEnd = key(alias="from")
+    to: AnEnd
+    value: ForceInTime
+
+
+class SpringEntry(Entry):
+    """A spring by its numbers, or by a law."""
+
+    type: Literal["spring"]
+    from_: AnEnd = key(alias="from")
+    to: AnEnd
+    stiffness: Stiffness | None = None
+    length: Length | None = None
+    damping: Damping | None = None
+    force: OwnSpringForce | None = None
+
+
+class TurnSpringEntry(Entry):
+    type: Literal["turn_spring"]
+    joint: str
+    stiffness: TurningStiffness | None = None
+    angle: Angle | None = None
+    damping: TurningDamping | None = None
+    torque: OwnTurnTorque | None = None
+
+
+class DistributedEntry(Entry):
+    type: Literal["distributed"]
+    on: str
+    from_: PointOrName = key(alias="from")
+    to: PointOrName
+    vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime]
+    to_vector: tuple[LineForceInTime, LineForceInTime, LineForceInTime] | None = None
+    frame: Frame = "world"
+
+
+class DamperEntry(Entry):
+    type: Literal["damper"]
+    joint: str
+    coefficient: Either | None = None
+    sliding: Damping | None = None
+    torque: OwnDamperTorque | None = None
+    force: OwnDamperForce | None = None
+
+
+class FrictionEntry(Entry):
+    type: Literal["friction"]
+    joint: str
+    torque: MomentInTime | None = None
+    force: ForceInTime | None = None
+    coefficient: Number | None = None
+    radius: Length | None = None
+    length: Length | None = None
+    speed: Either
+
+
+LoadEntry = (
+    ForceEntry
+    | CoupleEntry
+    | TorqueEntry
+    | ActuatorEntry
+    | SpringEntry
+    | TurnSpringEntry
+    | DistributedEntry
+    | DamperEntry
+    | FrictionEntry
+    | MotorEntry
+    | BushingEntry
+)
+LOADS: dict[str, type[LoadEntry]] = {
+    "force": ForceEntry,
+    "couple": CoupleEntry,
+    "torque": TorqueEntry,
+    "actuator": ActuatorEntry,
+    "spring": SpringEntry,
+    "turn_spring": TurnSpringEntry,
+    "distributed": DistributedEntry,
+    "damper": DamperEntry,
+    "friction": FrictionEntry,
+    "motor": MotorEntry,
+    "bushing": BushingEntry,
+}
+
+
+class ImpulseEntry(Entry):
+    on: BodyOrEnd | None = None
+    vector: tuple[Impulse, Impulse, Impulse] | None = None
+    body: str | None = None
+    couple: tuple[AngularImpulse, AngularImpulse, AngularImpulse] | None = None
+    time: Time = 0.0
+    when: StrikeInTime | None = None
+    every: Switch = False
+    frame: Frame = "world"
+
+
+class StopEntry(Entry):
+    joint: str
+    angle: AngleLimits | None = None
+    travel: LengthLimits | None = None
+    length: LengthLimits | None = None
+    restitution: Number = 0.0
+    friction: Number | None = None
+
+
+class LatchEntry(Entry):
+    stop: str | None = None
+    limit: Literal["lower", "upper"] | None = None
+    joint: str | None = None
+    angle: Angle | None = None
+    travel: Length | None = None
+    when: StrikeInTime | None = None
+    release: StrikeInTime | None = None
+    every: Switch = False
+
+
+class CircleEntry(Entry):
+    radius: Length
+
+
+class TubeEntry(Entry):
+    radius: Length
+    inner_radius: Length
+
+
+class RectangleEntry(Entry):
+    width: Length
+    height: Length
+
+
+class PropertiesEntry(Entry):
+    """Of a section: one of the named shapes, or all of the numbers."""
+
+    circle: CircleEntry | None = None
+    tube: TubeEntry | None = None
+    rectangle: RectangleEntry | None = None
+    area: Area | None = None
+    I1: AreaMoment | None = None
+    I2: AreaMoment | None = None
+    J: AreaMoment | None = None
+    c1: Length | None = None
+    c2: Length | None = None
+    shear_factor: Number | None = None
+
+
+class SectionEntry(Entry):
+    body: str
+    at: PointOrName | None = None
+    normal: Direction | None = None
+    from_: PointOrName | None = key(default=None, alias="from")
+    to: PointOrName | None = None
+    count: Count | None = None
+    first_axis: Direction | None = None
+    reduce_to: Annotated[Annotated[str, Tag("single")] | Annotated[AnEnd, Tag("mapping")], FORM] = "at"
+    side: Literal["before", "beyond"] | None = None
+    properties: (
+        Annotated[Annotated[Literal["auto"], Tag("single")] | Annotated[PropertiesEntry, Tag("mapping")], FORM] | None
+    ) = None
+    strength: Pressure | None = None
+    piece: PieceEntry | None = None
+
+
+ColumnName = str | int
+Column = Annotated[Annotated[list[Any], Tag("list")] | Annotated[str | int, Tag("single")], FORM]
+
+
+class TableEntry(Entry):
+    file: str | None = None
+    x: Column | None = None
+    y: Column | None = None
+    x_unit: str | None = None
+    y_unit: str | None = None
+    period: Anything | None = None
+    interpolation: Literal["linear", "cubic", "pchip"] = "linear"
+    ends: Literal["not-a-knot", "natural"] | None = None
+    outside: Literal["hold"] | None = None
+
+
+class ResultConditionEntry(Entry):
+    """A condition on a number of the results."""
+
+    of: str
+    below: Either | None = None
+    above: Either | None = None
+
+
+ConditionEntry = Annotated[
+    Annotated[TruthInTime, Tag("single")] | Annotated[ResultConditionEntry, Tag("mapping")], FORM
+]
+
+
+class AnalysisEntry(Entry):
+    type: Literal["motion", "impulse", "state", "rest"] | None = None
+    duration: Time | None = None
+    samples: Count | None = None
+    times: list[Time] | None = None
+    tolerance: Number | None = None
+    method: str = "auto"
+    step: Time | None = None
+    impacts: Literal["simultaneous", "sequential"] = "simultaneous"
+    until: ConditionEntry | None = None
+    events: dict[str, ConditionEntry] = key(default_factory=dict)
+
+
+class FoundationEntry(Entry):
+    about: PointOrName | None = None
+
+
+class ExpectEntry(Entry):
+    of: str
+    at: Time | None = None
+    peak: Literal["max", "min", "abs"] | None = None
+    is_: Expected = key(default=None, alias="is")
+    rel: Number | None = None
+    abs: Either | None = None
+    below: Either | None = None
+    above: Either | None = None
+    curve: str | None = None
+    x: ColumnName | None = None
+    y: ColumnName | None = None
+    x_unit: str | None = None
+    y_unit: str | None = None
+    within: Number | None = None
+    case: str | None = None
+
+    @property
+    def is_bounded(self) -> bool:
+        """Whether it is expected to stay below or above something, and not to be something."""
+        return self.below is not None or self.above is not None
+
+    @classmethod
+    def before(cls, data: Any) -> Any:
+        """It is something, stays below or above something, or follows a curve: null is something, too."""
+        if type(data) is dict and not {"is", "below", "above", "curve"} & data.keys() and "of" in data:
+            other = next((key for key in data if {"is", "below", "above"} & {*SEVERAL.get(str(key), ())}), None)
+            hint = "is: a number, a list or null; below: and above: bounds; or curve: a file"
+            raise Finding("missing-key", "'is' is missing", f"{hint} ('{other}' means nothing)" if other else hint)
+        return data
+
+
+class CaseEntry(Entry):
+    """A load case: values that hold in it in the place of others, by the names that --set takes."""
+
+    title: str = ""
+    set: dict[str, Any]
+
+
+class HeadEntry(Entry):
+    """What a spec has beside its blocks of entries."""
+
+    heun: FormatVersion
+    title: str = ""
+    gravity: tuple[Acceleration, Acceleration, Acceleration] = (0.0, 0.0, 0.0)
+    space: Literal["auto", "spatial", "planar"] = "auto"
+    report: list[Report] | None = None
+
+
+ENTRIES: dict[str, type[Entry] | Mapping[str, type[Entry]]] = {  # blocks of named entries: their models, or by type
+    "bodies": BodyEntry, "joints": JOINTS, "drives": DriveEntry, "forces": LOADS, "impulses": ImpulseEntry,
+    "stops": StopEntry, "latches": LatchEntry, "couplings": COUPLINGS, "rolling": RollingEntry,
+    "sections": SectionEntry, "cases": CaseEntry,
+}  # fmt: skip
+SINGLE: dict[str, type[Entry]] = {"ground": GroundEntry, "analysis": AnalysisEntry, "foundation": FoundationEntry}
+READ_BEFORE = ("parameters", "tables")  # by themselves: the rest refers to them
+
+
+class Document(NamedTuple):
+    """A spec as it was read; entries in error are left out."""
+
+    head: HeadEntry
+    ground: GroundEntry
+    bodies: dict[str, BodyEntry]
+    joints: dict[str, JointEntry]
+    drives: dict[str, DriveEntry]
+    forces: dict[str, LoadEntry]
+    impulses: dict[str, ImpulseEntry]
+    stops: dict[str, StopEntry]
+    couplings: dict[str, CouplingEntry]
+    rolling: dict[str, RollingEntry]
+    latches: dict[str, LatchEntry]
+    sections: dict[str, SectionEntry]
+    cases: dict[str, CaseEntry]
+    analysis: AnalysisEntry
+    foundation: FoundationEntry
+    expect: dict[int, ExpectEntry]

@@ -1,0 +1,133 @@
+"""The format's block `couplings`, a class a type: keys as users write them, values read to SI."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Any, Literal
+
+from heuncli.scene.file_format.entries import Before, Entry, key
+from heuncli.scene.file_format.fields import (
+    AnEnd,
+    Angle,
+    Anything,
+    AsText,
+    Damping,
+    Direction,
+    Force,
+    Length,
+    LengthInTime,
+    Lift,
+    Number,
+    Rate,
+    Stiffness,
+    Switch,
+)
+
+
+class RatioEntry(Entry):
+    """A linear relation of joints' coordinates."""
+
+    type: Literal["ratio"]
+    of: list[str]
+    factors: list[Anything]
+    is_: Anything | None = key("is", None)
+
+
+class GearEntry(Entry):
+    """Two gears, or a gear and a rack."""
+
+    type: Literal["gear"]
+    of: list[str]
+    ratio: Anything | None = None
+    teeth: list[Number] | None = None
+    internal: Switch = False
+    at: AnEnd | None = None
+    pressure_angle: Angle = math.radians(20.0)
+    helix: Angle = 0.0
+
+
+class ThreadFrictionEntry(Entry):
+    """What rubs in a thread."""
+
+    coefficient: Number | None = None
+    efficiency: Number | None = None
+    radius: Length
+    flank_angle: Angle = 0.0
+    speed: Rate
+
+
+class ScrewEntry(Entry):
+    """A thread."""
+
+    type: Literal["screw"]
+    of: list[str]
+    lead: Length
+    friction: Annotated[ThreadFrictionEntry, AsText()] | None = None
+
+
+class BeltEntry(Entry):
+    """A belt over two pulleys."""
+
+    type: Literal["belt"]
+    of: list[str]
+    radii: list[Length]
+    pretension: Force
+    crossed: Switch = False
+
+
+class DifferentialEntry(Entry):
+    """Two shafts and their carrier."""
+
+    type: Literal["differential"]
+    of: list[str]
+    ratio: Number = -1.0
+
+
+class CamEntry(Entry):
+    """A disc that moves a follower."""
+
+    type: Literal["cam"]
+    of: list[str]
+    lift: Lift
+    at: AnEnd
+    contact: Literal["roller", "flat", "point"]
+    radius: Length | None = None
+    normal: Direction | None = None
+    phase: Angle = 0.0
+    two_sided: Switch = False
+    restitution: Number | None = None
+
+
+class PassageEntry(Entry):
+    """Where a rope passes: a point, or a sheave about one."""
+
+    point: AnEnd | None = None
+    sheave: AnEnd | None = None
+    radius: Length | None = None
+    axis: Direction | None = None
+    side: Literal["over", "under", "left", "right"] | None = None
+    slip: Literal["free", "none"] = "free"
+
+
+def passage(value: Any, info: Any) -> Any:
+    """'cage.top', or {body: cage, at: [0, 0, 2]}, as {point: ...}."""
+    return {"point": value} if type(value) is str or (type(value) is dict and "body" in value) else value
+
+
+class RopeEntry(Entry):
+    """A rope through points and over sheaves."""
+
+    type: Literal["rope"]
+    through: list[Annotated[PassageEntry, Before(passage), AsText()]]
+    length: LengthInTime | None = None
+    tension_only: Switch = False
+    restitution: Number | None = None
+    stiffness: Stiffness | None = None
+    damping: Damping | None = None
+
+
+CouplingEntry = RatioEntry | GearEntry | ScrewEntry | BeltEntry | DifferentialEntry | CamEntry | RopeEntry
+COUPLINGS: dict[str, type[CouplingEntry]] = {
+    "ratio": RatioEntry, "gear": GearEntry, "screw": ScrewEntry, "belt": BeltEntry, "differential": DifferentialEntry,
+    "cam": CamEntry, "rope": RopeEntry,
+}  # fmt: skip

@@ -1,0 +1,302 @@
+"""Bodies: mass properties that a rigid body can have, given once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Finding
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format import format_elastic as fe
+from heuncli.scene.file_format import format_shapes as fs
+from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
+from heuncli.scene.file_format.semantics import body_axes, tensor
+from heuncli.scene.file_format.turns import principal
+
+# what to do about numbers that are too small
+SIZES = "give it above 0, in SI or with its unit"
+EDGES = "its three edges, in m"
+FULL = "the rate at which friction is nearly full, small beside those of the motion: 0.01"
+LEAST = {
+    "mass": "what has no mass is no body: a rod is a massless bar, a spring stands between points",
+    "duration": "for one instant leave duration and samples out", "step": "in s, as 1 ms",
+    "inner_radius": "a full one has no inner_radius", "length": "leave it out for the length as assembled; 0 is a ball",
+    "scale": "the length of one unit of the file: 1 mm",
+    "strength": "in Pa, as 235 MPa", "density": "in kg/m^3: 7850 is steel",
+}  # fmt: skip
+TURN_ROUND = {"torque": "it resists either way: give its size", "force": "it resists either way: give its size"}
+
+
+@rule("no-bodies")
+def no_bodies(draft: DraftDocument) -> Iterator[Violation]:
+    """A scene has bodies."""
+    if not draft.names.entries["bodies"] and "bodies" not in draft.unread:
+        yield Violation(
+            (), "the scene has no bodies", "bodies: {bar: {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}}"
+        )
+
+
+@rule("mass-or-shapes")
+def mass_or_shapes(draft: DraftDocument) -> Iterator[Violation]:
+    """Either mass, center and inertia, or shapes."""
+    for name, body in draft.document.bodies.items():
+        given = [key for key in ("mass", "center", "inertia") if getattr(body, key) is not None]
+        path = ("bodies", name)
+        if body.shapes is not None:
+            extra = [*given, *(["deviation"] if body.deviation is not None else [])]
+            if extra:
+                yield Violation(
+                    (*path, extra[0]), f"{' and '.join(extra)} beside shapes", "shapes give all of them", key=True
+                )
+            if not body.shapes:
+                yield Violation(
+                    (*path, "shapes"), "shapes is an empty list", "without shapes give mass, center and inertia"
+                )
+        elif len(given) < 3:
+            missing = [key for key in ("mass", "center", "inertia") if key not in given]
+            hint = "inertia: [0, 0, 0] makes a point mass" if missing == ["inertia"] else "or give shapes instead"
+            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
+
+
+@rule("not-positive")
+def not_positive(draft: DraftDocument) -> Iterator[Violation]:
+    """Masses, sizes, stiffnesses are more than 0."""
+    for name, body in draft.document.bodies.items():
+        path: Path_ = ("bodies", name)
+        yield from positive(path, body, "mass")
+        if body.piece is not None:
+            yield from positive((*path, "piece"), body.piece, "mass")
+        for i, shape in enumerate(body.shapes or []):
+            at = (*path, "shapes", i)
+            yield from positive(at, shape, "mass", "density", "line_density", "scale")
+            if not isinstance(shape, fs.ConeShape):
+                yield from positive(at, shape, "radius", "inner_radius")
+            elif min(shape.radius, shape.to_radius) < 0.0 or max(shape.radius, shape.to_radius) == 0.0:
+                message = "a cone's radii must not be negative, nor both 0"
+                yield Violation((*at, "radius"), message, "to_radius: 0 is a tip")
+            if isinstance(shape, fs.BoxShape) and min(shape.size) <= 0.0:
+                yield Violation((*at, "size"), f"a size must be more than 0, not {min(shape.size):g}", EDGES)
+    for name, joint in draft.document.joints.items():
+        path = ("joints", name)
+        yield from positive(path, joint, "length", "radius")
+        if isinstance(joint, f.Bearing) and joint.bearing is not None:
+            yield from positive((*path, "bearing"), joint.bearing, "diameter", "width")
+        if isinstance(joint.stiffness, float) and joint.stiffness <= 0.0:
+            message = f"a stiffness must be more than 0, not {joint.stiffness:g}"
+            yield Violation((*path, "stiffness"), message, "{moment: 0} gives way to what others hold; {force: 0}, too")
+        parts = [getattr(joint.stiffness, key, None) for key in ("force", "moment")]
+        numbers = [n for part in parts for n in (part if isinstance(part, tuple) else (part,)) if isinstance(n, float)]
+        if any(n < 0.0 for n in numbers):
+            message = f"a stiffness must not be negative, as {min(numbers):g} is"
+            yield Violation((*path, "stiffness"), message, "0: the joint gives way there to what others hold")
+    for name, load in draft.document.forces.items():
+        path = ("forces", name)
+        if isinstance(load, f.FrictionEntry):
+            yield from positive(path, load, "radius", "length")
+        if isinstance(load, f.FrictionEntry) and load.speed.constant is not None and load.speed.constant <= 0.0:
+            yield Violation((*path, "speed"), f"speed must be more than 0, not {load.speed.constant:g}", FULL)
+    for name, section in draft.document.sections.items():
+        path = ("sections", name)
+        yield from positive(path, section, "strength")
+        if section.piece is not None:
+            yield from positive((*path, "piece"), section.piece, "mass")
+        for kind in ("circle", "tube", "rectangle"):
+            shape_of = getattr(section.properties, kind, None)
+            if shape_of is not None:
+                yield from positive((*path, "properties", kind), shape_of, "radius", "inner_radius", "width", "height")
+        if section.properties is not None:
+            yield from positive((*path, "properties"), section.properties, "area", "I1", "I2", "J", "c1", "c2")
+    for name, wheel in draft.document.rolling.items():
+        yield from positive(("rolling", name), wheel, "radius")
+    yield from positive(("analysis",), draft.document.analysis, "duration", "step")
+
+
+def positive(path: Path_, owner: object, *keys: str) -> Iterator[Violation]:
+    """The values given are more than 0."""
+    for key in keys:
+        value = getattr(owner, key, None)
+        if isinstance(value, float) and value <= 0.0:
+            yield Violation((*path, key), f"{key} must be more than 0, not {value:g}", LEAST.get(key, SIZES))
+
+
+@rule("negative")
+def negative(draft: DraftDocument) -> Iterator[Violation]:
+    """Coefficients of springs, dampers and friction, and tolerances of expectations, are not negative."""
+    for name, load in draft.document.forces.items():
+        for key, value in resisting(load):
+            if isinstance(value, float) and value < 0.0:
+                hint = TURN_ROUND.get(key, "it resists with a number above 0; what drives is a torque, force or drive")
+                yield Violation(("forces", name, key), f"{key} must not be negative, but is {value:g}", hint)
+    for i, item in draft.document.expect.items():
+        for key in ("rel", "abs"):
+            value = getattr(item, key)
+            value = getattr(value, "constant", value)
+            if value is not None and value < 0.0:
+                hint = "it is how far what is found may be off, to either side"
+                yield Violation(("expect", i, key), f"{key} must not be negative, but is {value:g}", hint)
+
+
+def resisting(load: f.LoadEntry) -> Iterator[tuple[str, object]]:
+    """Every number that tells how much a load resists; of a law of its own what it does is not told by a sign."""
+    keys = ["stiffness", "length", "damping", "sliding", "coefficient", "turning", "turning_damping", "limit"]
+    if isinstance(load, f.FrictionEntry):
+        keys += ["torque", "force"]
+    for key in keys:
+        value = getattr(load, key, None)
+        if isinstance(value, fe.ShiftLaws | fe.TurnLaws):
+            value = (value.x, value.y, value.z)
+        for part in value if isinstance(value, tuple) else (value,):
+            yield key, getattr(part, "constant", part)
+
+
+@rule("shape-form")
+def shape_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A shape has one of mass and density, and an extent."""
+    for name, body in draft.document.bodies.items():
+        for i, shape in enumerate(body.shapes or []):
+            path = ("bodies", name, "shapes", i)
+            density = "line_density" if isinstance(shape, fs.RodShape) else "density"
+            if not isinstance(shape, fs.PointShape):
+                given = [key for key in ("mass", density) if getattr(shape, key) is not None]
+                if len(given) != 1:
+                    what = "both mass and" if given else "neither mass nor"
+                    yield Violation(path, f"{what} {density}", "give one of the two")
+            if isinstance(shape, fs.RodShape | fs.CylinderShape | fs.ConeShape) and shape.from_ == shape.to:
+                yield Violation((*path, "to"), "from and to are the same point", "without a length it is type: point")
+            if (
+                isinstance(shape, fs.CylinderShape)
+                and shape.inner_radius is not None
+                and shape.inner_radius >= shape.radius
+            ):
+                message = f"inner_radius {shape.inner_radius:g} is not less than radius {shape.radius:g}"
+                yield Violation((*path, "inner_radius"), message, "a full one has no inner_radius")
+
+
+def tensors(draft: DraftDocument) -> Iterator[tuple[Path_, f.BodyEntry | f.PieceEntry]]:
+    """Every body and piece with an inertia."""
+    for name, body in draft.document.bodies.items():
+        if body.inertia is not None:
+            yield ("bodies", name), body
+        if body.piece is not None:
+            yield ("bodies", name, "piece"), body.piece
+    for name, section in draft.document.sections.items():
+        if section.piece is not None:
+            yield ("sections", name, "piece"), section.piece
+
+
+@rule("inertia-form")
+def inertia_form(draft: DraftDocument) -> Iterator[Violation]:
+    """One number in the plane only; deviation beside a list only; a tensor is symmetric."""
+    planar = draft.document.head.space == "planar"
+    for path, owner in tensors(draft):
+        inertia = owner.inertia
+        if isinstance(inertia, float) and not planar:
+            yield Violation(
+                (*path, "inertia"), "one number instead of three", "one number is for space: planar; else [A1, A2, A3]"
+            )
+        if owner.deviation is not None and not isinstance(inertia, tuple | list):
+            yield Violation((*path, "deviation"), "deviation beside one number", "it goes with [A1, A2, A3]", key=True)
+        elif owner.deviation is not None and isinstance(inertia[0], tuple):  # type: ignore[index]
+            yield Violation(
+                (*path, "deviation"), "deviation beside a full tensor", "the tensor holds them: element = -D", key=True
+            )
+        if isinstance(inertia, tuple) and isinstance(inertia[0], tuple):
+            size = max(abs(x) for row in inertia for x in row)
+            for i, j in ((0, 1), (0, 2), (1, 2)):
+                if abs(inertia[i][j] - inertia[j][i]) > tolerances.INERTIA_TYPED * size:
+                    message = f"the tensor is not symmetric: {inertia[i][j]:g} and {inertia[j][i]:g}"
+                    hint = "give both the same; or the moments and deviation: [D1, D2, D3]"
+                    yield Violation((*path, "inertia"), message, hint)
+                    break
+
+
+def triangle(draft: DraftDocument) -> Iterator[tuple[Path_, str, float]]:
+    """Bodies whose principal moments no body has: path, the moments, by how much of the largest the rule is broken."""
+    for path, owner in tensors(draft):
+        if isinstance(owner.inertia, float):
+            moments: tuple[float, ...] = (owner.inertia,)
+            broken = 1.0 if owner.inertia < 0.0 else 0.0
+        else:
+            matrix = tensor(owner)
+            a, b, c = moments = (
+                principal(matrix) if off_diagonal(matrix) else tuple(sorted(matrix[i][i] for i in range(3)))
+            )
+            scale = max(abs(a), abs(c))
+            broken = max(-a, c - a - b) / scale if scale > 0.0 else 0.0
+        if broken > tolerances.INERTIA_TYPED:
+            yield (*path, "inertia"), ", ".join(f"{m:g}" for m in moments), broken
+
+
+def off_diagonal(m: tuple[tuple[float, ...], ...]) -> bool:
+    return any(m[i][j] != 0.0 for i, j in ((0, 1), (0, 2), (1, 2)))
+
+
+@rule("inertia-not-physical")
+def inertia_not_physical(draft: DraftDocument) -> Iterator[Violation]:
+    """No principal moment is negative, or greater than the sum of the others."""
+    for path, moments, broken in triangle(draft):
+        if broken > tolerances.INERTIA_REFUSED:
+            message = f"no body has the principal moments {moments}: each is at most the sum of the other two"
+            yield Violation(
+                path, message, "is it about the centre of mass? is the sign of the deviation right (element = -D)?"
+            )
+
+
+@rule("inertia-rounded", is_warning=True)
+def inertia_rounded(draft: DraftDocument) -> Iterator[Violation]:
+    """Moments that break the rule by less than 1e-3 are taken for rounded."""
+    for path, moments, broken in triangle(draft):
+        if broken <= tolerances.INERTIA_REFUSED:
+            yield Violation(
+                path, f"the principal moments {moments} break A1 + A2 >= A3 by {broken:.1e}; taken as they are",
+                "give them with more digits",
+            )  # fmt: skip
+
+
+@rule("orientation")
+def orientation(draft: DraftDocument) -> Iterator[Violation]:
+    """An orientation has one form, and is a rotation."""
+    for path, value in orientations(draft):
+        try:
+            body_axes(value)
+        except Finding as finding:
+            yield Violation(path, finding.message, finding.hint)
+
+
+def orientations(draft: DraftDocument) -> Iterator[tuple[Path_, fs.Orientation]]:
+    """Every orientation in the document."""
+    for name, body in draft.document.bodies.items():
+        if body.orientation is not None:
+            yield ("bodies", name, "orientation"), body.orientation
+        if body.near is not None and body.near.orientation is not None:
+            yield ("bodies", name, "near", "orientation"), body.near.orientation
+        for i, shape in enumerate(body.shapes or []):
+            if isinstance(shape, fs.BoxShape | fs.MeshShape) and shape.orientation is not None:
+                yield ("bodies", name, "shapes", i, "orientation"), shape.orientation
+    for name, load in draft.document.forces.items():
+        for key in ("orientation", "to_orientation") if isinstance(load, fe.BushingEntry) else ():
+            if getattr(load, key) is not None:
+                yield ("forces", name, key), getattr(load, key)
+
+
+@rule("piece-form")
+def piece_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A piece is for the one cut of a body without shapes."""
+    cuts: dict[str, list[str]] = {}
+    for name, section in draft.document.sections.items():
+        cuts.setdefault(section.body, []).append(name)
+        body = draft.document.bodies.get(section.body)
+        if section.piece is not None and body is not None and body.shapes is not None:
+            yield Violation(
+                ("sections", name, "piece"), "a piece of a body with shapes", "shapes are cut by themselves", key=True
+            )
+    for name, body in draft.document.bodies.items():
+        if body.piece is None:
+            continue
+        if body.shapes is not None:
+            yield Violation(
+                ("bodies", name, "piece"), "a piece beside shapes", "shapes are cut by themselves", key=True
+            )
+        elif len(cuts.get(name, ())) > 1:
+            message = f"one piece for {len(cuts[name])} sections ({', '.join(cuts[name])})"
+            yield Violation(("bodies", name, "piece"), message, "give each section its own piece", key=True)

@@ -1,0 +1,116 @@
+"""Cams: a disc on a pin and a follower on a slide or a pin of the same body, its lift periodic, all across one axis."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.base import tolerances
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.format_couplings import CamEntry
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+
+PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
+CONTACTS = {
+    "roller": ("radius", "the radius of the roller"),
+    "flat": ("normal", "the normal of the face, axes of the follower"),
+}
+
+
+def cams(draft: DraftDocument) -> Iterator[tuple[str, CamEntry]]:
+    """Every cam."""
+    for name, coupling in draft.document.couplings.items():
+        if isinstance(coupling, CamEntry):
+            yield name, coupling
+
+
+@rule("cam-joints")
+def cam_joints(draft: DraftDocument) -> Iterator[Violation]:
+    """A cam is of a pin and of a slide or pin whose `from` is the same body, the follower's point is on it."""
+    for name, cam in cams(draft):
+        path = ("couplings", name, "of")
+        if len(cam.of) != 2:
+            yield Violation(path, f"{len(cam.of)} joints", "of: [the disc's pin, the follower's slide or pin]")
+            continue
+        joints = [draft.document.joints.get(joint) for joint in cam.of]
+        shaft, follower = joints
+        if shaft is not None and not isinstance(shaft, f.PinJoint):
+            yield Violation((*path, 0), f"{cam.of[0]} is no pin", "the disc turns on a pin: of: [shaft, follower]")
+        if follower is not None and not isinstance(follower, f.PinJoint | f.SlideJoint):
+            yield Violation((*path, 1), f"{cam.of[1]} is neither a pin nor a slide", "a follower swings or slides")
+        if not isinstance(shaft, f.PinJoint) or not isinstance(follower, f.PinJoint | f.SlideJoint):
+            continue
+        if shaft.from_.body != follower.from_.body:
+            message = f"{cam.of[0]} is from {shaft.from_.body}, but {cam.of[1]} from {follower.from_.body}"
+            yield Violation(
+                path, message, "both joints are from the body that carries disc and follower: turn one round"
+            )
+        elif shaft.to.body == follower.to.body:
+            yield Violation(path, f"disc and follower are both {shaft.to.body}", "a cam moves another body")
+        elif not stands(shaft.axis, follower.axis, isinstance(follower, f.PinJoint)):
+            how = "along" if isinstance(follower, f.PinJoint) else "across"
+            message = f"the axis of {cam.of[1]} is not {how} that of {cam.of[0]}"
+            yield Violation(path, message, "a follower moves across the disc's axis")
+        if cam.at.body != follower.to.body:
+            message = f"the point is on {cam.at.body}, but the follower is {follower.to.body}"
+            yield Violation(("couplings", name, "at"), message, "the roller's centre, or a point of the face")
+
+
+def stands(a: tuple[float, float, float], b: tuple[float, float, float], along: bool) -> bool:
+    """Whether two directions are parallel, or else perpendicular."""
+    size = math.hypot(*a) * math.hypot(*b)
+    dot = sum(x * y for x, y in zip(a, b, strict=True))
+    cross = math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    return (cross if along else abs(dot)) <= tolerances.TYPED_AXES * size
+
+
+@rule("cam-contact")
+def cam_contact(draft: DraftDocument) -> Iterator[Violation]:
+    """A roller has a radius, a flat face a normal, a point neither; and what is guided on both sides never lifts."""
+    for name, cam in cams(draft):
+        path = ("couplings", name)
+        for contact, (key, what) in CONTACTS.items():
+            given = getattr(cam, key) is not None
+            if given and contact != cam.contact:
+                yield Violation((*path, key), f"a {cam.contact} has no {key}", f"leave it out, or contact: {contact}")
+            elif not given and contact == cam.contact:
+                yield Violation((*path, "contact"), f"a {contact} without {key}", f"{key}: {what}")
+        if cam.radius is not None and cam.radius <= 0.0:
+            yield Violation((*path, "radius"), f"radius {cam.radius:g}", "a roller has one; without it, contact: point")
+        if cam.normal == (0.0, 0.0, 0.0):
+            yield Violation((*path, "normal"), "normal is [0, 0, 0], which is no direction", "[0, 0, 1], say")
+        if cam.restitution is not None and not 0.0 <= cam.restitution <= 1.0:
+            yield Violation((*path, "restitution"), f"restitution {cam.restitution:g}", "between 0 and 1")
+        if cam.restitution is not None and cam.two_sided:
+            hint = "leave out one of the two"
+            yield Violation((*path, "restitution"), "a follower that is guided on both sides is never struck", hint)
+
+
+@rule("cam-lift")
+def cam_lift(draft: DraftDocument) -> Iterator[Violation]:
+    """The lift goes on smoothly as the disc turns round: its period is one turn, or a whole part of one; or it ends."""
+    for name, cam in cams(draft):
+        if cam.lift.kind != PERIODIC:
+            yield from open_lift(draft, name, cam)
+            continue
+        period = cam.lift.numbers[0]
+        turns = math.tau / period if period > 0.0 else 0.0
+        if not (period > 0.0 and abs(turns - round(turns)) <= tolerances.TABLE_ENDS and round(turns) >= 1):
+            message = f"the lift {cam.lift.name} does not fit a turn: its period is {math.degrees(period):.6g} deg"
+            yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or a whole part of it")
+
+
+def open_lift(draft: DraftDocument, name: str, cam: CamEntry) -> Iterator[Violation]:
+    """What is wrong with a lift over a part of a turn: it is of a disc that swings, and begins on it."""
+    first, last = cam.lift.x[0], cam.lift.x[-1]
+    if last - first > math.tau * (1.0 + tolerances.TABLE_ENDS):
+        message = f"the lift {cam.lift.name} covers {math.degrees(last - first):.6g} deg: a disc has a turn and no more"
+        yield Violation(("couplings", name, "lift"), message, "period: 360 deg, or fewer points")
+        return
+    shaft = draft.document.joints.get(cam.of[0]) if cam.of else None
+    held = shaft.initial.angle if isinstance(shaft, f.PinJoint) and shaft.initial is not None else None
+    if held is not None and not first + cam.phase <= held <= last + cam.phase:
+        covered = f"{math.degrees(first + cam.phase):.6g} to {math.degrees(last + cam.phase):.6g} deg"
+        message = f"angle {math.degrees(held):.6g} deg is off the lift of cam {name}, which covers {covered}"
+        hint = "hold the disc where it has a lift, or give the lift a period"
+        yield Violation(("joints", cam.of[0], "initial", "angle"), message, hint)

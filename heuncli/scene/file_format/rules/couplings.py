@@ -1,0 +1,219 @@
+"""Couplings: of joints that there are and that have the coordinates which are coupled."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.base.joint_kinds import TYPES, named
+from heuncli.base.nearest import did_you_mean
+from heuncli.scene.file_format import format_couplings as f
+from heuncli.scene.file_format.format import FrictionEntry
+from heuncli.scene.file_format.format_couplings import BeltEntry, DifferentialEntry, GearEntry, RatioEntry, ScrewEntry
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+
+COUNTS = {"gear": (2,), "belt": (2,), "screw": (1, 2), "differential": (3,)}  # joints of a type
+
+
+@rule("coupled-joint")
+def coupled_joint(draft: DraftDocument) -> Iterator[Violation]:
+    """What is coupled are joints with coordinates, each once."""
+    joints = draft.names.joints
+    for name, coupling in draft.document.couplings.items():
+        of = [] if isinstance(coupling, f.RopeEntry) else coupling.of
+        for i, word in enumerate(of):
+            path = ("couplings", name, "of", i)
+            joint, _, quantity = word.partition(".")
+            if joint not in joints:
+                yield Violation(path, f"'{joint}' is not a joint", did_you_mean(joint, joints, "joints") or "")
+                continue
+            kind = TYPES.get(joints[joint])
+            if kind is not None and (not kind.coordinates or kind.follows_path):
+                able = named([kind for kind in TYPES.values() if kind.coordinates and not kind.follows_path], "and")
+                if kind.follows_path:
+                    yield Violation(path, f"the travel of a {kind.name} cannot be coupled", f"couplings are of {able}")
+                    continue
+                yield Violation(path, f"a {kind.name} has no coordinate", f"couplings are of {able}")
+            elif kind is not None and quantity and quantity not in kind.coordinates:
+                yield Violation(path, f"a {kind.name} has no {quantity}", f"it has {' and '.join(kind.coordinates)}")
+            if word in of[:i]:
+                yield Violation(path, f"{word} is coupled to itself", "name another joint")
+
+
+@rule("coupling-count")
+def coupling_count(draft: DraftDocument) -> Iterator[Violation]:
+    """Every type is of so many joints."""
+    for name, coupling in draft.document.couplings.items():
+        if not isinstance(coupling, GearEntry | BeltEntry | ScrewEntry | DifferentialEntry):
+            continue
+        counts, of = COUNTS[coupling.type], coupling.of
+        if len(of) not in counts:
+            some = " or ".join(map(str, counts))
+            message = f"{', '.join(of) or 'nothing'} is named"
+            yield Violation(("couplings", name, "of"), message, f"a {coupling.type} is of {some}")
+
+
+@rule("gear-ratio")
+def gear_ratio(draft: DraftDocument) -> Iterator[Violation]:
+    """Gears have a ratio, or teeth, none of them zero, and angles that teeth have."""
+    for name, gear in draft.document.couplings.items():
+        if not isinstance(gear, GearEntry):
+            continue
+        path = ("couplings", name)
+        if gear.ratio is not None and gear.teeth is not None:
+            yield Violation((*path, "teeth"), "ratio and teeth are both given", "keep one of them", key=True)
+        if gear.ratio == 0.0:
+            yield Violation((*path, "ratio"), "a ratio of zero holds the first gear still", "give another ratio")
+        if gear.teeth is not None and (len(gear.teeth) != 2 or any(z < 1.0 for z in gear.teeth)):
+            hint = "two numbers of teeth, those of the first gear first; teeth of a ring by internal: true"
+            told = ", ".join(f"{z:g}" for z in gear.teeth)
+            yield Violation((*path, "teeth"), f"teeth {told} are no pair of gears", hint)
+        if gear.internal and gear.teeth is None and gear.ratio is None:
+            yield Violation(
+                (*path, "internal"), "internal says which side teeth are on", "give teeth with it", key=True
+            )
+        for key, most in (("pressure_angle", 60.0), ("helix", 80.0)):
+            angle = math.degrees(getattr(gear, key))
+            if not (0.0 if key == "pressure_angle" else -most) <= angle <= most:
+                yield Violation((*path, key), f"{angle:.4g} deg is no angle of teeth", f"up to {most:g} deg")
+
+
+@rule("flanks-rub")
+def flanks_rub(draft: DraftDocument) -> Iterator[Violation]:
+    """Friction by what presses knows no radial part of tooth forces, which presses, too."""
+    forces = draft.document.forces.values()
+    if not any(isinstance(own, FrictionEntry) and own.coefficient is not None for own in forces):
+        return
+    for name, gear in draft.document.couplings.items():
+        if isinstance(gear, GearEntry) and gear.pressure_angle != 0.0:
+            message = "friction by a coefficient does not know yet what teeth push apart with"
+            hint = "set pressure_angle: 0 to leave that out, or give the friction as a torque"
+            yield Violation(("couplings", name), message, hint, key=True)
+
+
+@rule("belt-name")
+def belt_name(draft: DraftDocument) -> Iterator[Violation]:
+    """The pretension of a belt is a load by the belt's name, and where it would push an event."""
+    for name, belt in draft.document.couplings.items():
+        if not isinstance(belt, BeltEntry):
+            continue
+        if name in draft.names.entries["forces"]:
+            message = f"{name} is the name of a force, too, and the belt's pretension has it among the loads"
+            yield Violation(("couplings", name), message, "give one of them another name", key=True)
+        event = f"{name}_pushes"
+        if event in draft.document.analysis.events:
+            message = f"'{event}' is taken: so the belt's own event is called"
+            yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
+
+
+@rule("coupling-sizes")
+def coupling_sizes(draft: DraftDocument) -> Iterator[Violation]:
+    """Leads that are not zero, radii above zero, no pretension below it; differentials that move all three shafts."""
+    for name, own in draft.document.couplings.items():
+        path = ("couplings", name)
+        if isinstance(own, ScrewEntry) and own.lead == 0.0:
+            yield Violation((*path, "lead"), "a lead of zero is no thread", "give the travel a turn")
+        if isinstance(own, BeltEntry):
+            if len(own.radii) != 2 or any(r <= 0.0 for r in own.radii):
+                told = ", ".join(f"{r:g}" for r in own.radii)
+                yield Violation((*path, "radii"), f"{told} m are no radii of two pulleys", "two lengths above zero")
+            if own.pretension < 0.0:
+                yield Violation((*path, "pretension"), "a belt does not push", "give the pull of each strand")
+        if isinstance(own, DifferentialEntry) and own.ratio in (0.0, 1.0):
+            message = f"a ratio of {own.ratio:g} leaves one of the three alone"
+            yield Violation((*path, "ratio"), message, "of equal wheels it is -1; with type: ratio any relation goes")
+
+
+@rule("coupling-terms")
+def coupling_terms(draft: DraftDocument) -> Iterator[Violation]:
+    """A linear relation has a factor for each joint, none of them zero, and two joints at least."""
+    for name, coupling in draft.document.couplings.items():
+        if not isinstance(coupling, RatioEntry):
+            continue
+        if len(coupling.factors) != len(coupling.of) or len(coupling.of) < 2:
+            message = f"{len(coupling.of)} joints with {len(coupling.factors)} factors"
+            yield Violation(("couplings", name, "factors"), message, "two joints at least, and a factor for each")
+        for i, factor in enumerate(coupling.factors):
+            if factor == 0.0:
+                hint = "leave out the joint, or give its factor"
+                yield Violation(("couplings", name, "factors", i), "a factor of zero couples nothing", hint)
+
+
+@rule("rope-way")
+def rope_way(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope has two places at least; each is a point, or a sheave with a radius and perhaps an axis and a side."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name, "through")
+        if len(rope.through) < 2:
+            yield Violation(path, f"a rope through {len(rope.through)} places", "name two at least: its ends")
+        for i, place in enumerate(rope.through):
+            for message, hint in wrong_places(place):
+                yield Violation((*path, i), message, hint)
+
+
+def wrong_places(place: f.PassageEntry) -> Iterator[tuple[str, str]]:
+    """What is wrong with one place of a rope, each with a hint."""
+    if (place.point is None) == (place.sheave is None):
+        yield "neither a point nor a sheave, or both", "body.point, or {sheave: body.point, radius: 0.3}"
+    elif place.sheave is not None and (place.radius is None or not place.radius > 0.0):
+        yield "a sheave without a radius", "radius: 0.3; a rope slides through a plain point, too: body.point"
+    elif place.point is not None:
+        keys = [key for key in ("radius", "axis", "side", "slip") if key in place.model_fields_set]
+        if keys:
+            yield f"{keys[0]} of a plain point", "a sheave is {sheave: body.point, radius: 0.3}"
+
+
+@rule("rope-bounds")
+def rope_bounds(draft: DraftDocument) -> Iterator[Violation]:
+    """A rope's length is positive and known; what catches pulls alone, with a restitution from 0 to 1."""
+    for name, rope in draft.document.couplings.items():
+        if not isinstance(rope, f.RopeEntry):
+            continue
+        path = ("couplings", name)
+        length = None if rope.length is None else rope.length.constant
+        if rope.length is not None and rope.length.uses:
+            joint, coordinate = rope.length.uses[0]
+            yield Violation((*path, "length"), f"a rope's length follows time alone, not {joint}.{coordinate}", "use t")
+        if length is not None and not length > 0.0:
+            yield Violation((*path, "length"), f"a rope of length {length:g} m", "leave it out: as assembled")
+        if rope.length is not None and any(place.slip == "none" for place in rope.through):
+            message = "the length of a rope that is held on a sheave"
+            yield Violation(
+                (*path, "length"),
+                message,
+                "leave it out: what is wound on the sheave is not told, either; a drive of a drum's pin winds it",
+            )
+        yield from stretching(name, rope)
+        if rope.restitution is None:
+            continue
+        if not 0.0 <= rope.restitution <= 1.0:
+            message = f"restitution {rope.restitution:g} is not between 0 and 1"
+            yield Violation((*path, "restitution"), message, "0: it stays taut, 1: it rebounds as fast")
+        if not rope.tension_only:
+            message = "restitution of a rope that holds both ways, and so is never struck"
+            yield Violation((*path, "restitution"), message, "tension_only: true")
+
+
+def stretching(name: str, rope: f.RopeEntry) -> Iterator[Violation]:
+    """What is wrong with how a rope stretches."""
+    path = ("couplings", name)
+    if rope.stiffness is None:
+        if rope.damping is not None:
+            yield Violation((*path, "damping"), "damping of a rope that keeps its length", "stiffness: 4e5 N/m")
+        return
+    if not rope.stiffness > 0.0:
+        message = f"a rope of stiffness {rope.stiffness:g} N/m"
+        yield Violation(
+            (*path, "stiffness"), message, "of the whole rope, EA by its length; left out it keeps its length"
+        )
+    if rope.damping is not None and rope.damping < 0.0:
+        yield Violation((*path, "damping"), f"damping {rope.damping:g} N·s/m is below 0", "0, or how much it takes")
+    if rope.restitution is not None:
+        message = "restitution of a rope that stretches, and so is not struck"
+        yield Violation((*path, "restitution"), message, "tension_only: true alone lets it go slack and catch")
+    if any(place.slip == "none" for place in rope.through):
+        message = "a rope that stretches and is held on a sheave: what it carries over it at which strain is not told"
+        hint = "slip: free; or leave out the stiffness; or a rope on either side, each ending at a point of the rim"
+        yield Violation((*path, "stiffness"), message, hint)

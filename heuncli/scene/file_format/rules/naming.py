@@ -1,0 +1,39 @@
+"""Names: what they may look like, and those that are taken."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.scene.file_format.names import NAMED, RESERVED_FOR, is_name
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+
+
+@rule("bad-name")
+def bad_name(draft: DraftDocument) -> Iterator[Violation]:
+    """A name is a letter, then letters, digits and _."""
+    hint = "a name is a letter, then letters, digits and _"
+    for block in NAMED:
+        for name in draft.names.entries[block]:
+            if not is_name(name):
+                yield Violation((block, name), f"'{name}' is not a name", hint, key=True)
+    for body, points in draft.names.points.items():
+        for name in points:
+            if not is_name(name):
+                path = ("ground",) if body == "ground" else ("bodies", body)
+                yield Violation((*path, "points", name), f"'{name}' is not a name", hint, key=True)
+
+
+@rule("reserved-name")
+def reserved_name(draft: DraftDocument) -> Iterator[Violation]:
+    """Some names mean something already."""
+    for block, taken in RESERVED_FOR.items():
+        for name in draft.names.entries[block]:
+            if name in taken:
+                what = (
+                    "the ground"
+                    if name == "ground"
+                    else "a word of expressions"
+                    if block != "forces"
+                    else "a cause of its own"
+                )
+                yield Violation((block, name), f"'{name}' is taken: it is {what}", f"call it {name}_1, say", key=True)

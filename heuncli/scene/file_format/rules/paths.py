@@ -1,0 +1,138 @@
+"""Joints along a path: that it is one, smooth all along, and that what is held at the start lies on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from heuncli.base import tolerances
+from heuncli.scene.expressions.programs import TableFunction
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.rules.registry import DraftDocument, Path_, Violation, rule
+
+if TYPE_CHECKING:
+    from heuncli.scene.expressions.paths import Path
+    from heuncli.scene.file_format.fields import Direction
+
+AXES = ("x", "y", "z")
+PERIODIC = 2  # a table's kind (scene/expressions/programs.py)
+
+
+@rule("path-form")
+def path_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A path is a table at least, its tables share a range, or a period; it never stands still; a start is on it."""
+    for name, joint in draft.document.joints.items():
+        if isinstance(joint, f.CurveJoint):
+            yield from faults(name, joint, draft.document.head.space == "planar")
+
+
+def faults(name: str, joint: f.CurveJoint, planar: bool) -> Iterator[Violation]:
+    """What keeps a joint's tables from being a path."""
+    path = ("joints", name)
+    tables = {axis: table for axis in AXES if isinstance(table := getattr(joint, axis), TableFunction)}
+    if not tables:
+        hint = "x, y and z are each a table over the travel along the path, or a number"
+        yield Violation(path, "a path without a table is a point", hint, key=True)
+        return
+    if planar and "z" in tables:
+        yield Violation((*path, "z"), "a planar scene has no path along z", "z: a number")
+        return
+    if (violation := ranges(name, tables)) is not None:
+        yield violation
+        return
+    from heuncli.scene.expressions.paths import cusp, path_of  # with NumPy, which few specs need
+
+    found = path_of((joint.x, joint.y, joint.z))
+    still = cusp(found)
+    if still is not None:
+        hint = "a path goes on everywhere: a corner is rounded, an end is cut off before it"
+        yield Violation(path, f"the path stands still at travel {still:.6g}: it has no direction there", hint, key=True)
+        return
+    if joint.radius is not None or joint.normal is not None or joint.one_sided:
+        yield from faults_of_side(name, joint, planar, found)
+    held = joint.initial.travel if joint.initial is not None else None
+    if held is not None and not found.period and not found.first <= held <= found.last:
+        message = f"travel {held:g} is off the path, which covers {found.first:.6g} to {found.last:.6g} m"
+        yield Violation((*path, "initial", "travel"), message, "hold it on the path, or leave it out")
+
+
+def faults_of_side(name: str, joint: f.CurveJoint, planar: bool, path: Path) -> Iterator[Violation]:
+    """What keeps a path from having sides, of one of which a roller is, or what it pushes: it lies in no plane."""
+    at, key = ("joints", name), "radius" if joint.radius is not None else "one_sided"
+    if joint.radius is None and not joint.one_sided:
+        hint = "it tells on which side a roller is, or what a one_sided path pushes"
+        yield Violation((*at, "normal"), "'normal' without 'radius'", hint, key=True)
+        return
+    normal = joint.normal or ((0.0, 0.0, 1.0) if planar else None)
+    if normal is None:
+        hint = "normal: [0, 0, 1], say: of the path's plane; where it points to the eye, the roller is on the left"
+        what = "a roller beside a path" if joint.radius is not None else "a path that pushes to one side"
+        yield Violation((*at, key), f"{what} needs its 'normal'", hint, key=True)
+        return
+    if normal == (0.0, 0.0, 0.0) or (planar and normal[:2] != (0.0, 0.0)):  # told of any joint
+        return
+    from heuncli.scene.expressions.beside import leaves_plane
+
+    if leaves_plane(path, normal):
+        where = (*at, "normal" if joint.normal is not None else key)
+        hint = "only a path in one plane has a left: z: a number, and normal: [0, 0, 1]"
+        yield Violation(where, "the path does not lie in a plane across its normal", hint)
+    elif joint.radius is not None and joint.radius > 0.0:  # else told of any radius
+        yield from faults_of_roller(at, joint, path, normal)
+
+
+def faults_of_roller(at: Path_, joint: f.CurveJoint, path: Path, normal: Direction) -> Iterator[Violation]:
+    """What keeps a roller from a path: it curves more than the roller can follow, or comes back too near."""
+    from heuncli.scene.expressions.beside import meets, tightest
+    from heuncli.scene.expressions.paths import path_beside
+
+    assert joint.radius is not None
+    roller = path_beside(path, joint.radius, normal)
+    s, share = tightest(roller)
+    if share > 1.0 - tolerances.STANDS_STILL:
+        s = s if abs(s) > tolerances.SAME_VALUE * (path.last - path.first) else 0.0  # else it is rounding
+        curved = f"the path curves with {joint.radius / share:.4g} m at travel {s:.6g}, where the roller has "
+        hint = "a smaller roller, a path that bends less, or the other side of it: the opposite normal"
+        yield Violation((*at, "radius"), f"{curved}{joint.radius:.4g} m: it cannot follow", hint)
+    elif (met := meets(roller)) is not None:
+        message = f"at travel {met[0]:.6g} the roller would meet the path at travel {met[1]:.6g}, too"
+        hint = "a shorter path, a smaller roller, or the other side of it; the centre's own path has no radius"
+        yield Violation((*at, "radius"), message, hint)
+
+
+def struck(draft: DraftDocument) -> Iterator[Violation]:
+    """What strikes a path may lift off it, gives back at most its speed, and drags at nothing while it flies."""
+    for name, joint in draft.document.joints.items():
+        if not isinstance(joint, f.CurveJoint) or joint.restitution is None:
+            continue
+        path = ("joints", name, "restitution")
+        if not joint.one_sided:
+            message = "restitution of a path that holds both ways, and so is never struck"
+            yield Violation(path, message, "one_sided: true", key=True)
+        if not 0.0 <= joint.restitution <= 1.0:
+            hint = "0: no rebound, 1: all of it"
+            yield Violation(path, f"restitution {joint.restitution:g} is not between 0 and 1", hint)
+        for load, entry in draft.document.forces.items():
+            if entry.type in ("damper", "friction") and entry.joint == name:
+                message = f"the {entry.type} {load} would go on acting while the point flies off its path"
+                hint = "without restitution the run ends where it lifts off"
+                yield Violation(("forces", load, "joint"), message, hint)
+
+
+def ranges(name: str, tables: dict[str, TableFunction]) -> Violation | None:
+    """What is wrong with the ranges of tables that make a path together."""
+    path = ("joints", name)
+    ends = {axis: (table.x[0], table.x[-1]) for axis, table in tables.items() if table.kind != PERIODIC}
+    if ends:
+        if max(low for low, _ in ends.values()) < min(high for _, high in ends.values()):
+            return None
+        message = "its tables have no travel in common: " + ", ".join(
+            f"{axis} from {low:.6g} to {high:.6g}" for axis, (low, high) in ends.items()
+        )
+        return Violation(path, message, "all are over one travel along the path", key=True)
+    periods = {axis: table.numbers[0] for axis, table in tables.items()}
+    first = next(iter(periods.values()))
+    if all(abs(period - first) <= tolerances.TABLE_ENDS * first for period in periods.values()):
+        return None
+    message = "its tables close after different ways: " + ", ".join(f"{a} after {p:.6g}" for a, p in periods.items())
+    return Violation(path, message, "a closed path has one period, its length", key=True)

@@ -1,0 +1,96 @@
+"""Wheels: round about an axle, on a plane that is another body's, with numbers that a wheel can have."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from heuncli.base import tolerances
+from heuncli.scene.file_format.format_rolling import AXLES, RollingEntry, axle, centre
+from heuncli.scene.file_format.names import GROUND
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+from heuncli.scene.file_format.turns import unit
+
+
+@rule("wheel-form")
+def wheel_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A disc has an axle, a sphere none; a wheel rolls on another body's plane."""
+    planar = draft.document.head.space == "planar"
+    for name, wheel in draft.document.rolling.items():
+        path = ("rolling", name)
+        yield from named_once(path, wheel, draft)
+        if wheel.wheel is None and centre(wheel, draft.document.joints) is None:
+            continue  # what it is named by is told of
+        if wheel.shape == "disc" and axle(wheel, draft.document.joints) is None and wheel.axle is None and not planar:
+            hint = "axis: that of its axle, in its own axes, as [0, 1, 0]; what is round all over is shape: sphere"
+            yield Violation(path, "a disc without an axle", hint, key=True)
+        for key in ("axis", "slides") if wheel.shape == "sphere" else ():
+            if getattr(wheel, key) is not None:
+                yield Violation((*path, key), f"a sphere with {key}", "leave it out, or leave shape out", key=True)
+        body = wheel.body if wheel.wheel is None else wheel.wheel.body
+        if body == wheel.on.body:
+            message, hint = (
+                f"wheel and on are both on {body}",
+                "a wheel rolls on another body, or on the ground",
+            )
+            yield Violation((*path, "on"), message, hint)
+        elif body == GROUND:
+            yield Violation(
+                (*path, "wheel" if wheel.body is None else "body"),
+                "the ground does not roll",
+                "the wheel is a body, the plane may be ground's",
+            )
+        if wheel.friction is not None and wheel.friction < 0.0:
+            message = f"a coefficient of friction of {wheel.friction:g}"
+            yield Violation((*path, "friction"), message, "a number from 0 on, as 0.8; left out nothing slips")
+        for event in (f"{name}_lifts", f"{name}_slips"):
+            if event in draft.document.analysis.events:
+                message = f"'{event}' is taken: so the wheel's own event is called"
+                yield Violation(("analysis", "events", event), message, "give one of them another name", key=True)
+        if planar:
+            yield from out_of_plane(path, wheel)
+
+
+def named_once(path: tuple[str, str], wheel: RollingEntry, draft: DraftDocument) -> Iterator[Violation]:
+    """A wheel is a point of a body, with the axis of a disc; or a body and the pin in which it turns."""
+    if wheel.wheel is not None:
+        for key in ("body", "axle"):
+            if getattr(wheel, key) is not None:
+                hint = "wheel and axis, or body and axle: the pin in which it turns"
+                yield Violation((*path, key), f"wheel and {key} are both given", hint, key=True)
+        return
+    if wheel.body is None and wheel.axle is None:
+        yield Violation(path, "'wheel' is missing", "its centre: body.point; or body: and axle: its pin", key=True)
+    for key, other in (("body", "axle"), ("axle", "body")):
+        if getattr(wheel, key) is None and getattr(wheel, other) is not None:
+            hint = (
+                "axle: the pin in which it turns" if key == "axle" else "body: which of the two of the pin the wheel is"
+            )
+            yield Violation(path, f"'{key}' is missing beside '{other}'", hint, key=True)
+    joint = draft.document.joints.get(wheel.axle or "")
+    if joint is not None and joint.type not in AXLES:
+        hint = f"the name of a joint of type {' or '.join(AXLES)}; or wheel: body.point and axis:"
+        yield Violation(
+            (*path, "axle"), f"{wheel.axle} is of type {joint.type}: nothing turns about one axis in it", hint
+        )
+    elif joint is not None and wheel.body is not None and centre(wheel, draft.document.joints) is None:
+        hint = f"{joint.from_.body} or {joint.to.body}"
+        yield Violation((*path, "body"), f"{wheel.body} is not at the joint {wheel.axle}", hint)
+    for key in ("axis",) if wheel.axle is not None and wheel.axis is not None else ():
+        yield Violation((*path, key), f"axle and {key} are both given", "the axle has one: leave it out", key=True)
+
+
+def out_of_plane(path: tuple[str, str], wheel: RollingEntry) -> Iterator[Violation]:
+    """In the xy plane wheels turn about z, on lines, along which they roll."""
+    for key, across in (("axis", True), ("normal", False)):
+        direction = getattr(wheel, key)
+        if direction is None or direction == (0.0, 0.0, 0.0):
+            continue
+        x, y, z = unit(direction)
+        if (math.hypot(x, y) if across else abs(z)) > tolerances.PARALLEL:
+            wants = "is the z axis" if across else "lies in the xy plane"
+            hint = "or declare space: spatial"
+            yield Violation((*path, key), f"in a planar scene {key} of a wheel {wants}", hint)
+    if wheel.slides is not None:
+        message = "in a planar scene a wheel that slides along its track holds nothing but its distance"
+        yield Violation((*path, "slides"), message, "a joint of type plane does that", key=True)

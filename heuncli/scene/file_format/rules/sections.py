@@ -1,0 +1,166 @@
+"""Sections: one cut or a run of cuts, in a body that knows its matter, with properties in one form."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from heuncli.base import tolerances
+from heuncli.scene.file_format import format as f
+from heuncli.scene.file_format.rules.registry import DraftDocument, Violation, rule
+from heuncli.scene.file_format.semantics import point_in
+from heuncli.scene.file_format.turns import cross, length, unit
+
+MOST_MEANT = 1e4  # MPa that a number may be meant in: some times what the hardest steel bears
+GENERAL = ("area", "I1", "I2", "J", "c1", "c2")
+REDUCED_TO = ("at", "centroid", "line")
+MOST_CUTS = 50_000  # of a run: no reader tells more apart, and validate cuts these in a second
+EVENLY = "1 is a stress that is spread evenly; of a rectangle it is 1.5, of a circle 4/3"
+
+
+def is_run(section: f.SectionEntry) -> bool:
+    """Whether it is a run of cuts."""
+    return section.from_ is not None or section.to is not None or section.count is not None
+
+
+@rule("section-form")
+def section_form(draft: DraftDocument) -> Iterator[Violation]:
+    """A cut has at and normal; a run has from, to and count, and takes the normal from them."""
+    for name, section in draft.document.sections.items():
+        path = ("sections", name)
+        single = [key for key in ("at", "normal") if getattr(section, key) is not None]
+        run = [
+            key
+            for key, value in (("from", section.from_), ("to", section.to), ("count", section.count))
+            if value is not None
+        ]
+        if single and run:
+            message = f"{' and '.join(single)} (one cut) beside {' and '.join(run)} (a run of cuts)"
+            yield Violation(path, message, "a run takes its normal from `from` to `to`", key=True)
+        elif not run and len(single) < 2:
+            missing = [key for key in ("at", "normal") if key not in single]
+            yield Violation(
+                path, f"{' and '.join(missing)} missing", "a run of cuts has from, to and count instead", key=True
+            )
+        elif run and len(run) < 3:
+            missing = [key for key in ("from", "to", "count") if key not in run]
+            hint = "a run of cuts has from, to and count: 21"
+            yield Violation(path, f"{' and '.join(missing)} missing", hint, key=True)
+        elif run:
+            yield from run_of_cuts(draft, name, section)
+        if section.reduce_to not in REDUCED_TO and isinstance(section.reduce_to, str) and "." not in section.reduce_to:
+            message = f"'{section.reduce_to}' is not a point of reference"
+            yield Violation(
+                (*path, "reduce_to"), message, "known: at, centroid, line, or a point as body.point, ground.point"
+            )
+
+
+def run_of_cuts(draft: DraftDocument, name: str, section: f.SectionEntry) -> Iterator[Violation]:
+    """A run has two ends, two cuts at least, and decides the sides by itself."""
+    path = ("sections", name)
+    if section.count is not None and not 2 <= section.count <= MOST_CUTS:
+        hint = "one cut is {body, at, normal}" if section.count < 2 else "extremes are searched between the cuts, too"
+        yield Violation((*path, "count"), f"a run has 2 to {MOST_CUTS} cuts, not {section.count}", hint)
+    body = draft.document.bodies.get(section.body)
+    if body is not None:
+        ends = [point_in(body, end) for end in (section.from_, section.to)]
+        if ends[0] is not None and ends[0] == ends[1]:
+            yield Violation((*path, "to"), "from and to are the same point", "the normal runs from one to the other")
+    if section.side is not None:
+        yield Violation((*path, "side"), "a run of cuts takes both sides by itself", "leave side out", key=True)
+    if section.piece is not None:
+        yield Violation(
+            (*path, "piece"), "a piece belongs to a single cut", "a run of cuts needs a body with shapes", key=True
+        )
+
+
+@rule("section-matter")
+def section_matter(draft: DraftDocument) -> Iterator[Violation]:
+    """A cut needs shapes to cut, or the piece it separates."""
+    for name, section in draft.document.sections.items():
+        body = draft.document.bodies.get(section.body)
+        if body is None or body.shapes is not None or section.piece is not None:
+            continue
+        if body.piece is None or is_run(section):
+            message = f"{section.body} has no shapes: what lies beyond the cut is not known"
+            hint = "give the body shapes, as [{type: rod, from: [0, 0, 0], to: [1, 0, 0], mass: 2}]" + (
+                "" if is_run(section) else ", or the section piece: {mass, center, inertia}"
+            )
+            yield Violation(("sections", name, "body"), message, hint)
+
+
+@rule("first-axis")
+def first_axis(draft: DraftDocument) -> Iterator[Violation]:
+    """first_axis does not point along the normal."""
+    for name, section in draft.document.sections.items():
+        normal = section.normal
+        body = draft.document.bodies.get(section.body)
+        if normal is None and body is not None:
+            start, end = point_in(body, section.from_), point_in(body, section.to)
+            if start is not None and end is not None:
+                normal = (end[0] - start[0], end[1] - start[1], end[2] - start[2])
+        if section.first_axis is None or normal is None or not any(normal) or not any(section.first_axis):
+            continue
+        if length(cross(unit(section.first_axis), unit(normal))) < tolerances.PARALLEL:
+            hint = "it is made perpendicular to the normal, and must not vanish by that"
+            yield Violation(("sections", name, "first_axis"), "first_axis points along the normal", hint)
+
+
+@rule("strength-small", is_warning=True)
+def strength_small(draft: DraftDocument) -> Iterator[Violation]:
+    """A plain number is in Pa: one of hundreds is meant in MPa."""
+    for name, section in draft.document.sections.items():
+        strength = section.strength
+        if strength is not None and 0.0 < strength < tolerances.LEAST_STRENGTH:
+            meant = f"{strength:g} MPa" if strength <= MOST_MEANT else "235 MPa"
+            message = f"a strength of {strength:g} Pa is less than any bar's: a plain number is in Pa"
+            yield Violation(("sections", name, "strength"), message, f"with its unit, as {meant}")
+
+
+@rule("properties-form")
+def properties_form(draft: DraftDocument) -> Iterator[Violation]:
+    """Properties are those of one named shape, or all six numbers; strength goes with them."""
+    for name, section in draft.document.sections.items():
+        properties = section.properties
+        path = ("sections", name)
+        if properties is None:
+            if section.strength is not None:
+                hint = "properties: {circle: {radius: 10 mm}}, or properties: auto"
+                yield Violation((*path, "strength"), "strength without properties gives no stress", hint, key=True)
+            continue
+        if isinstance(properties, str):
+            body = draft.document.bodies.get(section.body)
+            if body is not None and body.shapes is None:
+                message = f"{section.body} has no shapes to take them from"
+                yield Violation((*path, "properties"), message, f"circle, tube, rectangle, or all of {GENERAL}")
+            continue
+        shapes = [key for key in ("circle", "tube", "rectangle") if getattr(properties, key) is not None]
+        numbers = [key for key in GENERAL if getattr(properties, key) is not None]
+        if len(shapes) + bool(numbers) != 1:
+            yield Violation(
+                (*path, "properties"),
+                "properties of one shape are needed",
+                f"auto, circle, tube, rectangle, or all of {GENERAL}",
+            )
+        elif numbers and len(numbers) < len(GENERAL):
+            missing = ", ".join(key for key in GENERAL if key not in numbers)
+            yield Violation((*path, "properties"), f"properties without {missing}", f"all of {', '.join(GENERAL)}")
+        yield from shear_factor(properties, (*path, "properties", "shear_factor"))
+        tube = properties.tube
+        if tube is not None and tube.inner_radius >= tube.radius:
+            yield Violation(
+                (*path, "properties", "tube"),
+                f"inner_radius {tube.inner_radius:g} is not less than radius {tube.radius:g}",
+                "a full one is a circle",
+            )
+
+
+def shear_factor(properties: f.PropertiesEntry, path: tuple[str, ...]) -> Iterator[Violation]:
+    """The largest shear stress over the mean: of a section given by numbers, and no less than 1."""
+    factor = properties.shear_factor
+    if factor is None:
+        return
+    if properties.area is None:
+        hint = f"it goes with {', '.join(GENERAL)}"
+        yield Violation(path, "the shape itself says how its shear stresses are spread", hint, key=True)
+    elif factor < 1.0:
+        yield Violation(path, f"the largest shear stress over the mean is 1 at least, not {factor:g}", EVENLY)

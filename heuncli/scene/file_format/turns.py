@@ -1,0 +1,143 @@
+"""Attitudes and small tensors in plain floats: what the spec needs before any array exists.
+
+A rotation R takes components in the turned (body) axes to the fixed (world) axes.
+"""
+
+from __future__ import annotations
+
+import math
+
+from heuncli.base import tolerances
+from heuncli.base.errors import Finding
+from heuncli.scene.file_format.models import Matrix, Vec
+
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def length(v: Vec) -> float:
+    """Length of a vector, without overflow."""
+    return math.hypot(*v)
+
+
+def unit(v: Vec) -> Vec:
+    """Direction of a vector that is not zero."""
+    scale = max(map(abs, v))
+    x, y, z = v[0] / scale, v[1] / scale, v[2] / scale
+    n = math.sqrt(x * x + y * y + z * z)
+    return x / n, y / n, z / n
+
+
+def cross(a: Vec, b: Vec) -> Vec:
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+def product(a: Matrix, b: Matrix) -> Matrix:
+    rows = [tuple(sum(a[i][k] * b[k][j] for k in range(3)) for j in range(3)) for i in range(3)]
+    return rows[0], rows[1], rows[2]  # type: ignore[return-value]
+
+
+def about(axis: Vec, angle: float) -> Matrix:
+    """Turn by an angle about a direction that is not zero (Rodrigues)."""
+    x, y, z = unit(axis)
+    s, c = math.sin(angle), math.cos(angle)
+    d = 1.0 - c
+    return (
+        (c + d * x * x, d * x * y - s * z, d * x * z + s * y),
+        (d * x * y + s * z, c + d * y * y, d * y * z - s * x),
+        (d * x * z - s * y, d * y * z + s * x, c + d * z * z),
+    )
+
+
+def of_quaternion(q: tuple[float, float, float, float]) -> Matrix:
+    """Rotation of a quaternion (w, x, y, z), normalised here."""
+    n = math.hypot(*q)
+    w, x, y, z = (c / n for c in q)
+    return (
+        (1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)),
+        (2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)),
+        (2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)),
+    )
+
+
+def of_unit_quaternion(q: tuple[float, float, float, float]) -> Matrix:
+    """Rotation of a quaternion meant to be of unit length. Raises Finding."""
+    n = math.hypot(*q)
+    if abs(n - 1.0) > tolerances.UNIT_TYPED:
+        raise Finding("orientation", f"the quaternion has the length {n:.6g} instead of 1", "its order is w, x, y, z")
+    return of_quaternion(q)
+
+
+def of_rodrigues(k: Vec) -> Matrix:
+    """Rotation of the Rodrigues vector axis * tan(angle/2) (Heun no. 20)."""
+    return of_quaternion((1.0, *k))
+
+
+def of_euler(angles: Vec, sequence: str) -> Matrix:
+    """Turns about axes that turn along: zyx is about z, then the new y, then the new x. Raises Finding."""
+    if (
+        len(sequence) != 3
+        or not set(sequence) <= set("xyz")
+        or sequence[0] == sequence[1]
+        or sequence[1] == sequence[2]
+    ):
+        hint = "three of the letters x, y, z, no two neighbours alike: zyx (yaw, pitch, roll), zxz, ..."
+        raise Finding("orientation", f"'{sequence}' is not a sequence of axes", hint)
+    R = IDENTITY
+    for letter, angle in zip(sequence, angles, strict=True):
+        R = product(R, about(IDENTITY["xyz".index(letter)], angle))
+    return R
+
+
+def of_matrix(m: Matrix) -> Matrix:
+    """The rotation that a matrix typed with some digits means. Raises Finding."""
+    columns = tuple(zip(*m, strict=True))
+    off = max(
+        abs(sum(columns[i][k] * columns[j][k] for k in range(3)) - (1.0 if i == j else 0.0))
+        for i in range(3)
+        for j in range(3)
+    )
+    handed = sum(a * b for a, b in zip(cross(m[0], m[1]), m[2], strict=True))
+    if off > tolerances.UNIT_TYPED or handed < 0.0:
+        skew = off > tolerances.UNIT_TYPED
+        what = "its columns are not perpendicular and of length 1" if skew else "it is a mirror, not a turn"
+        raise Finding(
+            "orientation", f"the matrix is not a rotation: {what}", "columns are the body's axes in world axes"
+        )
+    return m if off <= tolerances.UNIT_EXACT else of_quaternion(to_quaternion(m))
+
+
+def to_quaternion(R: Matrix) -> tuple[float, float, float, float]:
+    """Quaternion of a rotation from its largest component (Shepperd); of a matrix nearly one, that of one nearby."""
+    t = R[0][0] + R[1][1] + R[2][2]
+    squares = (1.0 + t, 1.0 + 2.0 * R[0][0] - t, 1.0 + 2.0 * R[1][1] - t, 1.0 + 2.0 * R[2][2] - t)
+    k = squares.index(max(squares))
+    s = math.sqrt(squares[k])
+    f = 0.5 / s
+    a, b, c = (R[2][1] - R[1][2]) * f, (R[0][2] - R[2][0]) * f, (R[1][0] - R[0][1]) * f
+    d, e, g = (R[1][0] + R[0][1]) * f, (R[2][0] + R[0][2]) * f, (R[2][1] + R[1][2]) * f
+    h = 0.5 * s
+    return ((h, a, b, c), (a, h, d, e), (b, d, h, g), (c, e, g, h))[k]
+
+
+def principal(m: Matrix) -> Vec:
+    """Eigenvalues of a symmetric matrix, ascending (Jacobi's turns, which keep small ones accurate)."""
+    a = [list(row) for row in m]
+    for _ in range(30):
+        if a[0][1] == a[0][2] == a[1][2] == 0.0:
+            break
+        for p, q in ((0, 1), (0, 2), (1, 2)):
+            if a[p][q] == 0.0:
+                continue
+            theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q]
+            t = math.copysign(1.0, theta) / (abs(theta) + math.hypot(theta, 1.0))
+            c = 1.0 / math.sqrt(t * t + 1.0)
+            s = t * c
+            r = 3 - p - q
+            apq, arp, arq = a[p][q], a[r][p], a[r][q]
+            a[p][p] -= t * apq
+            a[q][q] += t * apq
+            a[p][q] = a[q][p] = 0.0
+            a[r][p] = a[p][r] = c * arp - s * arq
+            a[r][q] = a[q][r] = s * arp + c * arq
+    x, y, z = sorted((a[0][0], a[1][1], a[2][2]))
+    return x, y, z

@@ -1,0 +1,194 @@
+"""What other programs call things, for hints."""
+
+from __future__ import annotations
+
+from heuncli.base.joint_kinds import SYNONYMS
+
+FORCE_WORDS = {
+    "moment": "couple", "engine": "motor", "thrust": "torque", "bush": "bushing", "mount": "bushing",
+    "brake": "friction", "springdamper": "spring", "spring_damper": "spring",
+    "dashpot": "damper", "load": "force", "cylinder": "actuator", "coulomb": "friction",
+    "torsion_spring": "turn_spring", "torsional_spring": "turn_spring", "rotational_spring": "turn_spring",
+    "rotary_spring": "turn_spring", "angular_spring": "turn_spring", "spiral_spring": "turn_spring",
+    "line_load": "distributed", "udl": "distributed", "uniform": "distributed", "distributed_load": "distributed",
+    "line_force": "distributed",
+}  # fmt: skip
+COUPLING_WORDS = {
+    "gears": "gear", "spur": "gear", "bevel": "gear", "rack": "gear", "rackpinion": "gear", "rack_and_pinion": "gear",
+    "chain": "belt", "pulley": "rope", "sheave": "rope", "hoist": "rope", "tackle": "rope", "spindle": "screw",
+    "lead_screw": "screw", "leadscrew": "screw", "nut": "screw", "couple": "ratio", "mimic": "ratio", "linear": "ratio",
+    "follower": "cam",
+}  # fmt: skip
+SHAPE_WORDS = {
+    "bar": "rod", "line": "rod", "beam": "rod", "tube": "cylinder", "pipe": "cylinder", "disk": "cylinder",
+    "disc": "cylinder", "cuboid": "box", "cube": "box", "brick": "box", "ball": "sphere", "frustum": "cone",
+    "mass": "point", "particle": "point", "stl": "mesh", "obj": "mesh", "ply": "mesh", "cad": "mesh", "surface": "mesh",
+    "polyhedron": "mesh", "trimesh": "mesh", "import": "mesh",
+}  # fmt: skip
+KEY_WORDS = {
+    "com": "center", "cog": "center", "centre": "center", "cm": "center", "moments": "inertia", "tensor": "inertia",
+    "rotation": "orientation", "attitude": "orientation", "omega": "angular_velocity", "spin": "angular_velocity",
+    "end": "duration", "time": "duration", "tend": "duration", "t_end": "duration", "steps": "samples",
+    "tol": "tolerance", "rtol": "tolerance", "parent": "from", "child": "to", "connections": "joints",
+    "constraints": "joints", "loads": "forces", "links": "bodies", "cuts": "sections", "motors": "drives",
+    "variables": "parameters", "constants": "parameters", "version": "heun", "name": "title", "k": "stiffness",
+    "c": "damping", "free_length": "length", "rest_length": "length", "direction": "axis", "points_on": "points",
+    "bumpers": "stops", "limits": "stops", "contacts": "stops", "buffers": "stops", "bumper": "stops",
+    "latch": "latches", "catches": "latches", "locks": "latches", "detents": "latches", "clamps": "latches",
+    "limit": "stops", "contact": "stops", "stop": "stops", "endstops": "stops", "end_stops": "stops",
+    "blows": "impulses", "blow": "impulses", "impulse": "impulses", "hits": "impulses", "shocks": "impulses",
+    "e": "restitution", "cor": "restitution", "bounce": "restitution", "rebound": "restitution", "mu": "friction",
+    "position": "travel", "displacement": "travel", "distance": "length", "moment": "couple", "torque": "couple",
+    "body": "bodies", "parts": "bodies", "members": "bodies", "bars": "bodies", "kind": "type", "joint": "joints",
+    "rho": "density", "wheels": "rolling", "tyres": "rolling", "tires": "rolling", "hub": "wheel",
+    "when": "time", "instant": "time", "t": "time", "point": "on", "slack": "tension_only",
+    "lifts": "one_sided", "unilateral": "one_sided",
+}  # fmt: skip
+SEVERAL = {  # words that mean one thing here and another there, the likeliest first
+    "value": ("vector", "is", "value"), "vector": ("value",), "force": ("vector", "value"), "path": ("of",),
+    "what": ("of",), "quantity": ("of",), "result": ("of",), "body": ("on",), "at": ("on",), "where": ("on",),
+    "damping": ("coefficient",), "coefficient": ("damping",), "c": ("coefficient",), "d": ("coefficient", "damping"),
+    "l0": ("length",), "natural_length": ("length",), "free": ("length",), "rpm": ("rate",),
+    "n": ("rate", "count"), "number": ("count",), "samples": ("count",), "on": ("body",), "load": ("vector",),
+    "q": ("vector",), "intensity": ("vector",),
+    "omega": ("rate",), "velocity": ("rate", "speed"), "angular_velocity": ("rate",), "solver": ("method", "analysis"),
+    "integrator": ("method",), "t_max": ("duration",), "tmax": ("duration",), "stop": ("duration",),
+    "t_stop": ("duration",), "simulation": ("analysis",), "settings": ("analysis",), "run": ("analysis",),
+    "options": ("analysis",), "g": ("gravity",), "world": ("ground",), "base": ("ground",), "frame": ("ground",),
+    "springs": ("forces",), "dampers": ("forces",), "actuators": ("forces",), "materials": ("parameters",),
+    "output": ("report",), "outputs": ("report",), "equals": ("is",), "expected": ("is",), "max": ("below",),
+    "min": ("above",), "less": ("below",), "greater": ("above",), "j": ("inertia",), "i": ("inertia",),
+    "m": ("mass",), "r": ("radius",), "start": ("from",), "sides": ("size",), "pos": ("position",),
+    "pose": ("position",), "markers": ("points",), "frames": ("points",), "geometry": ("shapes",),
+    "shape": ("shapes",), "a": ("from",), "b": ("to",), "body1": ("from",), "body2": ("to",), "body_a": ("from",),
+    "body_b": ("to",), "kind": ("type",), "n_samples": ("samples",), "mode": ("type",),
+}  # fmt: skip
+WORDS = {  # of `type` under analysis, and the like
+    **dict.fromkeys(("dynamic", "dynamics", "transient", "simulation", "kinematic", "kinematics"), ("motion",)),
+    **dict.fromkeys(("static", "statics", "equilibrium", "steady"), ("rest", "state")),
+    "2d": ("planar",), "plane": ("planar",), "3d": ("spatial",), "space": ("spatial",), "local": ("body",),
+    "global": ("world",), "shock": ("impulse",),
+    **dict.fromkeys(("stress", "stresses", "shear", "bending", "cuts", "internal"), ("sections",)),
+    **dict.fromkeys(("reactions", "reaction", "constraints", "bearings"), ("joints",)),
+    **dict.fromkeys(("positions", "velocities", "accelerations", "bodies", "coordinates"), ("motion",)),
+    **dict.fromkeys(("supports", "ground", "base"), ("foundation",)), "loads": ("forces",), "blows": ("impulses",),
+}  # fmt: skip
+METHOD_WORDS = {  # of methods, in lower case, without hyphens
+    "forwardeuler": "Euler", "expliciteuler": "Euler", "improvedeuler": "Heun2", "heun": "Heun2", "midpoint": "Heun2",
+    "rk2": "Heun2", "rk3": "Heun3", "rungekutta": "RK4", "rungekutta4": "RK4", "kutta": "RK4", "classical": "RK4",
+    "rk45": "DOPRI5", "ode45": "DOPRI5", "dopri": "DOPRI5", "dp5": "DOPRI5", "rkf45": "DOPRI5", "tsit5": "DOPRI5",
+    "dormandprince": "DOPRI5", "rk23": "DOPRI5", "ode23": "DOPRI5", "rk853": "DOP853", "dop8": "DOP853",
+    "dopri8": "DOP853", "dp8": "DOP853", "ode78": "DOP853", "ode113": "DOP853", "abm": "DOP853", "adams": "DOP853",
+    "vern9": "Verner98", "vern98": "Verner98", "verner": "Verner98", "ode89": "Verner98",
+    "gauss": "Gauss4", "gausslegendre": "Gauss4", "implicitmidpoint": "Gauss4", "symplectic": "Gauss4",
+    "verlet": "Gauss4", "leapfrog": "Gauss4", "newmark": "Gauss4", "gausslegendre4": "Gauss4",
+    "gausslegendre6": "Gauss6", "radau": "Radau5", "radauiia": "Radau5", "radauiia5": "Radau5", "stiff": "Radau5",
+    "implicit": "Radau5", "implicteuler": "Radau5", "ode15s": "Radau5", "ode23s": "Radau5", "ode23t": "Radau5",
+    "dassl": "Radau5", "ida": "Radau5", "cvode": "Radau5", "gstiff": "Radau5", "hht": "Radau5", "rodas": "Radau5",
+    "rosenbrock": "Radau5", "generalizedalpha": "Radau5", "bdf": "SciPy-BDF", "lsoda": "SciPy-LSODA",
+    "odeint": "SciPy-LSODA", "vode": "SciPy-BDF", "default": "auto", "automatic": "auto", "adaptive": "auto",
+}  # fmt: skip
+FORMS = {  # what the values of some keys look like
+    "rotor": "what turns in the motor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "gravity": "it is a vector: [0, 0, -9.81]", "orientation": "as {axis: [0, 0, 1], angle: 60 deg}",
+    "inertia": "the moments about the axes [A1, A2, A3], or a 3x3 tensor in rows",
+    "report": "as [joints, energy]", "expect": "as [{of: joints.NAME.force.z, is: 9.81}]",
+    "shapes": "one shape is a list, too: [{type: cylinder, ...}]", "times": "as [0, 0.5, 1]",
+    "points": "by their names: {top: [0, 0, 0]}", "events": "by their names: {falls: pivot.angle > 1}",
+    "rectangle": "as {width: 0.1, height: 0.2}", "circle": "as {radius: 0.1}",
+    "tube": "as {radius: 0.1, inner_radius: 0.09}", "ground": "as {points: {O: [0, 0, 0]}}",
+    "analysis": "as {duration: 2, samples: 201}", "initial": "as {angle: 30 deg, rate: 0}",
+    "stiffness": "one number, or {force: 2e8, moment: 1e5}; of a bushing [x, y, z], or {x: table, y: 2e5}",
+    "near": "as {position: [0, 0, 1]}",
+    "foundation": "as {about: [0, 0, 0]}", "properties": "auto, or as {circle: {radius: 0.01}}",
+    "piece": "as {mass: 1, center: [0, 0, 0], inertia: [0, 0, 0]}", "title": "write a text, in quotes where it holds :",
+    "of": "the path of a result: joints.NAME.force.z", "until": "a condition, as guide.travel > 0.2",
+}  # fmt: skip
+JOINTS = "a list of joints: [first, second]"  # what `of` is of a coupling
+PLACES = frozenset(
+    {"from", "to", "center", "position", "at"}
+)  # lists of coordinates, in the body's axes or the world's
+FORMS_OF_KINDS = {  # what values look like of which only the kind is known
+    "a mapping": "keys with their values, as {key: value}", "a text": "write a name, or a text in quotes",
+    "true or false": "true or false, without quotes", "a number": "as 0.5, \"12 mm\" or \"2*L\"",
+}  # fmt: skip
+MISSING = {  # what a key is that must be there
+    "length": "the length at which it exerts no force", "vector": "three components, as [0, 0, -10]",
+    "on": "the point at which it acts: body.point", "speed": "the rate at which friction is nearly full, as 0.01",
+    "axis": "a direction, as [0, 0, 1]", "joint": "the name of the joint in which it acts",
+    "of": "the path of a result: joints.NAME.force.z", "body": "the name of the body",
+    "from": "one end: body.point, ground.point", "to": "the other end: body.point, ground.point",
+    "mass": "in kg, as 1.5", "center": "its centre: [x, y, z]", "inertia": "about its centre of mass: [A1, A2, A3]",
+    "radius": "in m, or with a unit: 10 mm", "to_radius": "the radius at its other end, 0 for a tip",
+    "inner_radius": "in m, or with a unit: 9 mm", "size": "its three edges: [x, y, z]", "at": "the point: [x, y, z]",
+    "curve": "its torque over its speed: a table, or an expression of rate",
+    "radii": "of both pulleys: [50 mm, 100 mm]", "pretension": "the pull of each strand at rest, in N",
+    "lift": "the name of a table: the lift over the disc's angle", "contact": "roller, flat or point",
+    "set": "as {n: 1500 rpm}", "file": "the file with its triangles: rod.stl", "diameter": "in m, or with a unit",
+    "factors": "a number for each joint of of, as [1, 2]", "lead": "the travel for a turn, as 5 mm",
+    "through": "points and sheaves in order: [ground.A, cage.top]",
+    "stiffness": "N/m, of a turn_spring N*m/rad", "value": "a number or an expression in time, as 5*sin(t)",
+    "to_axis": "the axis fixed in the to body, as [0, 1, 0]", "normal": "a direction, as [0, 0, 1]",
+    "angle": "the angle at which it exerts no torque", "width": "along e1, in m", "height": "along e2, in m",
+}  # fmt: skip
+OF_THREADS = ("efficiency", "coefficient", "mu", "radius", "flank_angle", "speed")  # keys of a screw's friction
+MOTOR = {  # what a motor's card has, and what of it is called or written otherwise
+    "stall_torque": "it is called stall here", "no_load_speed": "it is called idle here",
+    "idle_speed": "it is called idle here", "speed": "its speed without load is idle",
+    "torque": "its torque at standstill is stall",
+    "gear": "it is called ratio here: turns of the motor for one of the joint",
+    "max_torque": "it is called limit here", "torque_limit": "it is called limit here",
+    "peak_torque": "it is called limit here", "duty": "it is called value here",
+    "max_speed": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "speed_limit": "a speed that it must not pass ends the run: analysis: {until: shaft.rate > 300}",
+    "inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "rotor_inertia": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "armature": "of what turns in it: rotor: {mass: 0.2 kg, inertia: 1e-4 kg*m^2}",
+    "damping": "a load beside it: forces: {drag: {type: damper, joint: NAME, coefficient: 0.01}}",
+    "friction": "a load beside it: forces: {rubs: {type: friction, joint: NAME, torque: 0.3 N m}}",
+    "voltage": "currents and voltages are not computed: stall and idle are those at its voltage",
+    "current": "currents and voltages are not computed: limit is the torque at the largest current",
+}  # fmt: skip
+BRAKE = dict.fromkeys(("ramp", "rise", "delay"), 'its size may follow time: torque: "8*min(t/0.2, 1)"') | dict.fromkeys(
+    ("size", "value"), "of a given size it has a torque, in a slide a force"
+)
+LATCH = dict.fromkeys(
+    ("until", "opens", "off"), "it lets go where release becomes true: release: t > 1.5"
+) | dict.fromkeys(
+    ("at", "time", "from", "position"), "where it catches is angle or travel, from what on is when: t > 0.1"
+)
+BY_KEYS = ((("stall", "ratio"), MOTOR), (("joint", "speed", "radius"), BRAKE), (("release", "every"), LATCH))
+CV = "a constant-velocity joint is a joint: joints: {NAME: {type: cv, from: ..., to: ..., axis: [1, 0, 0]}}"
+ELSEWHERE = {  # keys that stand in another place than the one where they were written
+    "stops": "limits of coordinates are a block of their own: stops: {buffer: {joint: guide, travel: [0, 0.2]}}",
+    "restitution": "it stands at a rod with tension_only, or at a stop",
+    "tension_only": "it stands at a joint of type rod",
+    "diameter": "write the radius, half of it",
+    "length": "its ends are from and to",
+    "height": "its ends are from and to",
+    "torque": "a torque is a force of type torque; a drive prescribes the motion, and its torque comes out",
+    "on": "a torque acts in a joint; what acts on a body is a couple, type: couple",
+    "dt": "steps are chosen by the tolerance; samples is the number of instants told, times lists them",
+    "units": "units stand with the numbers, as 12 mm; plain numbers are SI; for tables: --units",
+    "mu": "coefficient: of the joint's own force; friction of a given size has torque or force instead",
+    "motor": "a pin or slide that is driven: drives: {motor: {joint: NAME, rate: 1500 rpm}}, or a force of type motor",
+    "efficiency": "what gears lose is a load beside them: forces: {rubs: {type: friction, joint: spin, "
+    "torque: 0.3 N m}}; a thread has a friction of its own",
+    "material": "a shape takes density: 7850 kg/m^3",
+    "color": "shapes have no looks",
+    "colour": "shapes have no looks",
+    "cv": CV,
+    "constant_velocity": CV,
+    "homokinetic": CV,
+    "rzeppa": CV,
+}
+JOINT_WORDS = SYNONYMS | dict.fromkeys(("cable", "rope", "string", "tether"), "rod, with tension_only: true")
+LATER = {  # of the format, but of a later version: (block or key, word)
+    ("keys", "sweep"),
+}  # fmt: skip
+TYPES = {  # by the key above the entry: code, what it is called, foreign words
+    "joints": ("unknown-joint-type", "a joint type", JOINT_WORDS),
+    "forces": ("unknown-force-type", "a force type", FORCE_WORDS),
+    "couplings": ("unknown-coupling-type", "a coupling type", COUPLING_WORDS),
+    "shapes": ("unknown-shape-type", "a shape", SHAPE_WORDS),
+}
