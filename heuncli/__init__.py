@@ -28,12 +28,12 @@ if TYPE_CHECKING:
     from heuncli.version import VERSION as __version__
 
 HOME = {  # each name, and the module that it is in
-    "solve": "door", "solve_cases": "door", "validate": "door",
-    "Solved": "in_python.solved", "Signal": "in_python.signals", "Number": "in_python.measured",
-    "Diagram": "in_python.diagrams",
-    "HeunError": "errors", "SpecError": "errors", "SolveError": "errors", "LimitError": "errors",
-    "OutputError": "errors", "UsageError": "errors", "UnknownPath": "in_python.asked_run",
-    "Problem": "errors", "SourceLocation": "errors", "HeunWarning": "in_python.warned",
+    "solve": "app.api", "solve_cases": "app.api", "validate": "app.api",
+    "Solved": "app.python.solved", "Signal": "app.python.signals", "Number": "app.python.measured",
+    "Diagram": "app.python.diagrams",
+    "HeunError": "base.errors", "SpecError": "base.errors", "SolveError": "base.errors", "LimitError": "base.errors",
+    "OutputError": "base.errors", "UsageError": "base.errors", "UnknownPath": "app.python.asked_run",
+    "Problem": "base.errors", "SourceLocation": "base.errors", "HeunWarning": "app.python.warned",
 }  # fmt: skip
 __all__ = [*HOME, "__version__"]
 

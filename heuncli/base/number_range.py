@@ -8,7 +8,11 @@ from heuncli.base import tolerances
 from heuncli.base.errors import Finding
 
 if TYPE_CHECKING:
-    from heuncli.results.results import Array, Mask
+    import numpy as np
+    from numpy.typing import NDArray
+
+    Array = NDArray[np.float64]
+    Mask = NDArray[np.bool_]
 
 ACCEPTED = f"0, or {tolerances.LEAST_MAGNITUDE:.0e} to {tolerances.MOST_MAGNITUDE:.0e} in SI units".replace("+", "")
 TOO_SMALL = "look at its unit; what is meant to be nothing is written 0"

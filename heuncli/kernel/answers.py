@@ -1,4 +1,4 @@
-"""What the sweep knows at a state, found and written down as flat numbers (multibody/tree/tables.py names their parts)."""
+"""What the sweep knows at a state, as flat numbers, whose parts multibody/tree/tables.py names."""
 
 from __future__ import annotations
 

@@ -460,7 +460,8 @@ def of_piece(c: cython.p_double, table: Table, counted: cython.double, x: cython
 
 
 def area_under(c: cython.p_double, table: Table, x: cython.double) -> cython.double:
-    """The integral of a table from 0 to x, of one that has its areas behind the coefficients (scene/expressions/areas.py).
+    """The integral of a table from 0 to x, of one that has its areas behind the coefficients
+    (scene/expressions/areas.py).
 
     From x's own piece on it is summed up where its area from 0 is known, or from 0 itself, so that what is little
     beside the piece is told as well: by two nodes of Gauss, which are exact for cubics.

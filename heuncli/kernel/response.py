@@ -2,8 +2,8 @@
 
     configure   factors of tree and closures at the present kinematics: no loads
     respond     loads on the bodies -> accelerations and multipliers; inertial: with velocity terms, drives and gravity
-Accelerations (49), velocity jumps (48), projection onto the closures and single columns of loads (heuncli/multibody/response.py)
-are all answers of this map: M V + ... = loads + J' lambda, J V + gamma = 0.
+Accelerations (49), velocity jumps (48), projection onto the closures and single columns of loads
+(heuncli/multibody/response.py) are all answers of this map: M V + ... = loads + J' lambda, J V + gamma = 0.
 """
 
 from __future__ import annotations

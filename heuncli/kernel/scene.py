@@ -2,9 +2,9 @@
 
     [n; f] = [A C; C' K] [alpha; a] + [M_branch; f_branch]       what a joint must exert on the branch from its body
                                                                  outward, about the body's joint point r; world axes
-Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory; the plain
-kernel makes objects of them. Fields up to the blank line are given when the scene is packed, the others are the
-kernel's own. World axes unless said otherwise; `a` is throughout the acceleration less that of gravity.
+Rows of NumPy tables (multibody/tree/tables.py makes their types from these classes) are the compiled kernel's memory;
+the plain kernel makes objects of them. Fields up to the blank line are given when the scene is packed, the others are
+the kernel's own. World axes unless said otherwise; `a` is throughout the acceleration less that of gravity.
 """
 
 from __future__ import annotations

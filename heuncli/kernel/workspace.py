@@ -1,11 +1,13 @@
-"""A scene in the kernel's memory, and what it answers at single states: the doors that heuncli/multibody/response.py opens.
+"""A scene in the kernel's memory, and what it answers at single states: the doors that heuncli/multibody/response.py
+opens.
 
     recover     everything the sweep knows at given states
     columns     one factorisation, many loads: what answers each
     jacobians   the closure rows on the tree's freedoms
     jacobian    the tangent of the motion
     carried     the joint loads that closure multipliers alone leave in the tree
-Everything goes in and out as flat arrays of double (multibody/tree/tables.py names their parts); nothing is kept between calls.
+Everything goes in and out as flat arrays of double (multibody/tree/tables.py names their parts); nothing is kept
+between calls.
 """
 
 from __future__ import annotations
@@ -43,7 +45,7 @@ class Workspace:
     def __init__(
         self, tables: dict[str, Any], indices: array[int], expressions: Expressions, numbers: dict[str, Any]
     ) -> None:
-        """tables: structured arrays by name (multibody/tree/tables.py); indices: of the closure rows; numbers: single ones."""
+        """tables: structured arrays by name (multibody/tree/tables.py); indices: of closure rows; numbers: others."""
         if not cython.compiled:
             self.scene: Scene = Scene.blank()
         scene: cython.pointer[Scene] = cython.address(self.scene)

@@ -3,7 +3,8 @@
     HEUN_HARVEST=FILE.json.gz pytest -p tests.compare.harvest
 
 Every text that a test loads from a string, once, with its overrides and the tables it reads; at most MOST, in turn from
-each test. Not with several workers: each would write the file. Impure: replaces heuncli.scene.file_format.load.load, writes FILE.
+each test. Not with several workers: each would write the file. Impure: replaces heuncli.scene.file_format.load.load,
+writes FILE.
 """
 
 from __future__ import annotations

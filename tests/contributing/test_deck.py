@@ -15,7 +15,7 @@ PLAIN = Addition(
         "heuncli/app/commands/exporting/request.py": (Edit('"calculix", "abaqus")', '"calculix", "abaqus", "plain")'),),
     },
     {
-        "heuncli/output/fe_decks/plain.py": '''"""Load cases as plain lines: the acceleration of the body, a block a case."""
+        "heuncli/output/fe_decks/plain.py": '''"""Load cases as plain lines: the acceleration, a block a case."""
 
 from __future__ import annotations
 

@@ -60,7 +60,9 @@ Force = (
 """),
             after("import numpy as np\n", "\nfrom heuncli.scene.expressions.programs import Expression"),
         ),
-        "heuncli/study/quantities/labels.py": (Edit('"actuator", "spring"})', '"actuator", "spring", "counterweight"})'),),
+        "heuncli/study/quantities/labels.py": (
+            Edit('"actuator", "spring"})', '"actuator", "spring", "counterweight"})'),
+        ),
     },
 )  # fmt: skip
 SCENE = """\

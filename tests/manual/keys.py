@@ -70,7 +70,7 @@ SPELLED = {"*": "·", "^2": "²", "^3": "³", "^4": "⁴"}
 
 
 def unit_of_value(name: str, value: fields.ReadValue) -> str | None:
-    """The unit of a kind of values of scene/file_format/fields.py, as the manual writes it; None: one that other keys decide."""
+    """The unit that the manual writes for a kind of scene/file_format/fields.py; None where other keys decide it."""
     if value.dimension is None or isinstance(value, fields.Component):
         return None
     unit = u.si_unit(value.dimension)

@@ -18,9 +18,9 @@ ROOT = Path(heuncli.__file__).parent
 # Names of structs of the kernel that are those of what they are rows of: the field's word for it, on both sides.
 OF_THE_KERNEL = {
     "Body": "scene/file_format/models.py: a rigid body; kernel/scene.py: its row in the tree",
-    "Contact": "multibody/tree/layout.py: a rope or a limit that opens and closes; kernel/scene.py: its margin over a step",
-    "Freedom": "multibody/tree/layout.py: a freedom of a joint and its place in the state; kernel/scene.py: its row in the tree",
-    "Island": "multibody/tree/layout.py: loops that share bodies; kernel/scene.py: where their rows and freedoms are listed",
+    "Contact": "multibody/tree/layout.py: a rope or limit that opens and closes; kernel/scene.py: its margin in a step",
+    "Freedom": "multibody/tree/layout.py: a freedom of a joint, its place in the state; kernel/scene.py: its row",
+    "Island": "multibody/tree/layout.py: loops that share bodies; kernel/scene.py: their rows and freedoms",
     "Method": "motion/integration/methods/method.py: a method by its coefficients; kernel/stepping.py: these in memory",
 }
 

@@ -1,6 +1,7 @@
 """How well the modes about a rest pose are known: what those about the poses beside it, in its stated error, differ by.
 
-Of what nothing holds the pose is known as well as the way there (loads/equilibrium/finer.py), and frequencies change along it.
+Of what nothing holds the pose is known as well as the way there (loads/equilibrium/finer.py), and frequencies change
+along it.
 """
 
 from __future__ import annotations

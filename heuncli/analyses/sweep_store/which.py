@@ -5,8 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from heuncli.analyses.sweep_store.store.store import StoredSweep
-from heuncli.app.cli.entry import UsageError
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Problem, UsageError
 from heuncli.base.foreign_text import shown
 
 

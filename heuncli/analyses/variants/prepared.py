@@ -4,7 +4,8 @@
     study = prepared.solve({"w": "1500 rpm", "r": "0.06"})
 
 What is kept is what a variant would make with the very same bits: it is decided by what each entry, rule and stage has
-looked up (scene/file_format/variants.py), so a variant is what `heun run --set` makes of it, to the bit, whichever came before.
+looked up (scene/file_format/variants.py), so a variant is what `heun run --set` makes of it, to the bit, whichever came
+before.
 """
 
 from __future__ import annotations

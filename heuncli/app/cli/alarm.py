@@ -24,6 +24,7 @@ from contextlib import contextmanager
 from types import FrameType
 from typing import TypeVar
 
+import heuncli
 from heuncli.base import signals
 from heuncli.base.errors import HeunError, LimitError, Problem
 
@@ -58,7 +59,7 @@ PHASES = (
 )  # fmt: skip
 UNTOLD = "before the work was done"  # of commands that have no words of their own
 Answer = TypeVar("Answer")
-OWN = os.path.join(os.path.dirname(os.path.dirname(__file__)), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
+OWN = os.path.join(os.path.dirname(heuncli.__file__), "")  # noqa: PTH118, PTH120 - pathlib takes 3 ms
 SHELTERED = (__file__, signals.__file__)  # what begins and ends the watch; what ends the process
 # Libraries that let an exception of what they call through as it is. Not among them: what imports (a module half
 # imported cannot be imported again for the next spec), pydantic, which wraps it, and SciPy, whose Fortran prints it.

@@ -1,9 +1,9 @@
 """The vocabulary of requests: what an option of a command is, and those that many commands have.
 
 A request is a named tuple, one for each command; a field is an option (or the arguments), its annotation holds the
-words and the help. Two readers fill it in: app/cli/plain.py at once for plain command lines, app/cli/app.py through typer for
-help and usage errors. Named tuples here and in report/, not dataclasses: those take 0.6 ms each to define, and every
-command pays.
+words and the help. Two readers fill it in: app/cli/plain.py at once for plain command lines, app/cli/app.py through
+typer for help and usage errors. Named tuples here and in report/, not dataclasses: those take 0.6 ms each to define,
+and every command pays.
 """
 
 from typing import Any, ClassVar, Protocol
@@ -52,7 +52,7 @@ SPEC = Option((), "The scene's YAML file; - reads standard input.", "SPEC", comp
 
 
 class Request(Protocol):
-    """A named tuple of options, such as RunRequest in heuncli/app/commands/run/request.py; its docstring is the help."""
+    """A named tuple of options, such as RunRequest in app/commands/run/request.py; its docstring is the help."""
 
     _field_defaults: ClassVar[dict[str, Any]]
 

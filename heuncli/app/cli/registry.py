@@ -7,8 +7,9 @@ The folder of a command holds what it alone needs:
     command.py   main(request) -> exit code; the one module that knows the command line, files and the terminal
     study.py     what it finds out; page.py: how that is told; results.py: the rows of what is found; and the like
 
-Both modules are found by name when the command is asked for, so that nothing below heuncli/app/commands imports any of it,
-and one command loads nothing of another. What two commands need stands below them: in cli, report, drawing or study.
+Both modules are found by name when the command is asked for, so that nothing below heuncli/app/commands imports any of
+it, and one command loads nothing of another. What two commands need stands below them: in cli, report, drawing or
+study.
 """
 
 from __future__ import annotations
@@ -24,9 +25,9 @@ from heuncli.base.named_tuples import NamedTuple
 class Command(NamedTuple):
     """A command.
 
-    name: the word of the command line; folder: in heuncli/app/commands, where that is not the name; page: the name of the
-    page of the manual that tells of it; grace [s]: how long it may go on beyond its time limit, longer for a command
-    that then tells the part that is done; phase: what the error of the time limit says was under way, where
+    name: the word of the command line; folder: in heuncli/app/commands, where that is not the name; page: the name of
+    the page of the manual that tells of it; grace [s]: how long it may go on beyond its time limit, longer for a
+    command that then tells the part that is done; phase: what the error of the time limit says was under way, where
     app/cli/alarm.py has no words for the modules at work.
     """
 

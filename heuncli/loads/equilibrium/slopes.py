@@ -1,9 +1,10 @@
 """How the accelerations at rest change with the pose: their linear law about it, and its own directions.
 
     a(q + T z) = a + T A z,     A = V diag(lambda) V^-1,     c = V^-1 T+ a
-T are displacements that the closures admit, orthonormal by the coordinates' weights (motion/linearisation/linearise.py). c is
-what is left to be followed along each direction; noise is what rounding makes of it: less than that is nothing.
-Directions that hardly differ share a block in place of eigenvalues of their own (directions.py).
+T are displacements that the closures admit, orthonormal by the coordinates' weights
+(motion/linearisation/linearise.py). c is what is left to be followed along each direction; noise is what rounding makes
+of it: less than that is nothing. Directions that hardly differ share a block in place of eigenvalues of their own
+(directions.py).
 """
 
 from __future__ import annotations

@@ -69,7 +69,8 @@ class Resolution:
     ) -> None:
         """Mark what is open, or was until a split was chosen, in the blocks of all that stands or carries, in place.
 
-        axes: in which the joints' loads are told; keys: of what stands on the ground (loads/kinetostatics/foundation.py).
+        axes: in which the joints' loads are told; keys: of what stands on the ground
+        (loads/kinetostatics/foundation.py).
         """
         reactions = shown.get("joints")
         if self.left is not None:

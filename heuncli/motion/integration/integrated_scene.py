@@ -1,4 +1,4 @@
-"""What is integrated in a scene's place: itself, or a smaller one that moves as it does (multibody/reduction/model.py)."""
+"""The scene that is integrated: the given one, or a smaller one of the same motion (multibody/reduction/model.py)."""
 
 from __future__ import annotations
 

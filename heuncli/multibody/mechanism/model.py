@@ -1,8 +1,9 @@
 """The mechanism as plain SI arrays: bodies, joints, drives and loads, before any tree is chosen.
 
 Vectors are (3,) float64. Bodies and joints are called by their numbers, in the order of the spec; body -1 is the
-ground. Values in time stay expressions (scene/expressions/programs.py). Bodies, joints, drives, blows, stops and conditions
-have the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they act.
+ground. Values in time stay expressions (scene/expressions/programs.py). Bodies, joints, drives, blows, stops and
+conditions have the classes of the spec (scene/file_format/models.py); its kinds of loads become five, by where they
+act.
 """
 
 from __future__ import annotations

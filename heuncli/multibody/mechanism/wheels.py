@@ -1,8 +1,8 @@
 """A wheel as the conditions that it holds: that it touches its plane, and that it does not slip along it, or aside.
 
 The first holds a pose, the others a speed. Multipliers are the forces ON the wheel: along the plane's normal, along its
-track, along its axle's shadow on the plane. That a plane only presses is watched for (scene/file_format/resolve_couplings.py): of
-more wheels than it takes nothing tells what each of them bears.
+track, along its axle's shadow on the plane. That a plane only presses is watched for
+(scene/file_format/resolve_couplings.py): of more wheels than it takes nothing tells what each of them bears.
 """
 
 from __future__ import annotations

@@ -68,7 +68,7 @@ class ImmobilitySearch:
 
 
 def idle_axes(scene: PreparedScene, R: Array) -> dict[int, Array]:
-    """Axes about which bodies rest for ever, for no moment acts about them (multibody/reduction/spins.py), world axes (k, 3)."""
+    """World axes (k, 3) about which bodies rest for ever: no moment acts about them (multibody/reduction/spins.py)."""
     place = scene.layout.place
     found = {place[i]: spin.axis[None, :] for i, spin in spins_of(scene).items() if spin.rate == 0.0}
     found |= {place[spin.body]: spin.axes for spin in scene.idle}

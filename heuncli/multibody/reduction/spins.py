@@ -5,8 +5,8 @@ and the axis a moves as the angular momentum about it, I3 Omega, lets it, whatev
 axis may stand for it, with the spin that has the same angular momentum:
     I3' Omega' = I3 Omega,   R = R' rot(a, (Omega - Omega') t),   omega = omega' + (Omega - Omega') R a
 A thin wire gets a moment that rounding of the moments about its axis does not accelerate, a fast top turns no faster
-than it nutates. Where there is no inertia about the axis at all the spin is none, and multibody/tree/idle_spins.py sees to it.
-Declined: what would turn with the body (a force in its axes), couples, pins, dampers in its balls.
+than it nutates. Where there is no inertia about the axis at all the spin is none, and multibody/tree/idle_spins.py sees
+to it. Declined: what would turn with the body (a force in its axes), couples, pins, dampers in its balls.
 """
 
 from __future__ import annotations

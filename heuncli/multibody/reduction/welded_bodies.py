@@ -3,8 +3,8 @@
     P = sum G P_b G^T,   G = [[R, p], [0, 1]]        about their common centre, axes of the body nearest the ground
 Those welded to the ground are part of it. Only welds of the tree count, and of a circle of welds the tree takes all
 but one: what is left of it is then between two points of one body, and holds nothing more. A weld that the tree cuts
-for a body without mass (multibody/tree/spanning.py) closes a loop as any joint does. What the welds carry, and cuts through the
-bodies, are told from the whole scene.
+for a body without mass (multibody/tree/spanning.py) closes a loop as any joint does. What the welds carry, and cuts
+through the bodies, are told from the whole scene.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """A figure: panels under each other, each with two axes, and in them curves, bands, marks and outlines.
 
 Everything stands in the units of the axes; where it comes to stand in pixels or in the cells of a terminal is told by
-output/drawing/layout.py and output/drawing/letters.py. A number that is not known (nan) is drawn by nobody: curves are broken there.
+output/drawing/layout.py and output/drawing/letters.py. A number that is not known (nan) is drawn by nobody: curves are
+broken there.
 """
 
 from __future__ import annotations

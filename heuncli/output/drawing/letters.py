@@ -1,7 +1,7 @@
 """A figure in the cells of a terminal: curves in braille, eight dots a cell, or in letters where it shows no braille.
 
-The items are those of output/drawing/figure.py. Curves keep the colour of their pen where colours are shown; else the pen's
-letter stands at some places of a curve, and where there is no braille it is drawn with it.
+The items are those of output/drawing/figure.py. Curves keep the colour of their pen where colours are shown; else the
+pen's letter stands at some places of a curve, and where there is no braille it is drawn with it.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """Section loads all along a bar: at an instant, at a blow, and the lowest and highest over a run.
 
-A run of cuts is looked at as a whole stretch, not at the cuts that were asked for (loads/kinetostatics/stretch.py): between
-two of its corners (joints, loads, point masses, changes of shape) the loads are smooth in s, the way along it; at a
-corner they are taken on either side, so that a jump has both its values at its very place. Of what moves over the body
-the corner moves, too, and is where it stands at that instant.
+A run of cuts is looked at as a whole stretch, not at the cuts that were asked for (loads/kinetostatics/stretch.py):
+between two of its corners (joints, loads, point masses, changes of shape) the loads are smooth in s, the way along it;
+at a corner they are taken on either side, so that a jump has both its values at its very place. Of what moves over the
+body the corner moves, too, and is where it stands at that instant.
 """
 
 from __future__ import annotations

@@ -14,7 +14,8 @@ from heuncli.scene.meshes.model import Numbers, crossed
 
 MOST = 6000  # triangles of a mesh that are drawn
 CELLS = 64  # along each of its extents, to begin with
-EDGE = 0.8  # cosine of the angle between two faces below which the side between them is an edge: as output/web_page/surfaces.js has
+# Cosine of the angle between two faces below which their common side is an edge; so in output/web_page/surfaces.js.
+EDGE = 0.8
 
 
 class ThinnedMesh(NamedTuple):

@@ -1,8 +1,9 @@
 """The numbers of a solved scene as they are kept: what its tables tell, to full digits, with the errors it states.
 
 Of every quantity: first and last value, the extremes searched between the samples with their instants, the values at
-eleven even instants, and sums over its whole course (output/snapshots/course_sums.py), so that a course that changes between its
-extremes is seen. Of a run of cuts the highest and the lowest of its cuts, with the extremes of the whole stretch.
+eleven even instants, and sums over its whole course (output/snapshots/course_sums.py), so that a course that changes
+between its extremes is seen. Of a run of cuts the highest and the lowest of its cuts, with the extremes of the whole
+stretch.
 """
 
 from __future__ import annotations

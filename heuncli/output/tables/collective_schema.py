@@ -1,4 +1,4 @@
-"""The JSON of `heun run --collective` as a JSON Schema: what stands in `collectives` (output/tables/collective_tables.py)."""
+"""The JSON Schema of `collectives` in `heun run --collective --json` (output/tables/collective_tables.py)."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """The numbers of a page: what tables show of a run, each with its path, all its digits, and how many it shows of them.
 
 A row is one quantity over the frames: a number, or a vector with its components. Its style is that of the tables: no
-more digits than the run can stand behind (study/quantities/digits.py). Values stay in SI beside the unit in which they are shown.
+more digits than the run can stand behind (study/quantities/digits.py). Values stay in SI beside the unit in which they
+are shown.
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ from heuncli.scene.file_format.key_rows import KeyRow, rows_by_chapter
 from heuncli.scene.file_format.pydantic_models import model_of
 from heuncli.scene.file_format.source import read
 
-STARTERS = Path(__file__).parents[1] / "starters"
+STARTERS = Path(__file__).parents[2] / "starters"
 DRAFT = "http://json-schema.org/draft-07/schema#"
 REF = "#/definitions/{model}"
 NULL = {"type": "null"}

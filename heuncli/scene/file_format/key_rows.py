@@ -8,7 +8,7 @@ from pathlib import Path
 
 from heuncli.base.named_tuples import NamedTuple
 
-PAGE = Path(__file__).parents[1] / "manual" / "format.md"
+PAGE = Path(__file__).parents[2] / "manual" / "format.md"
 HEADING = re.compile(r"^#+ (.+)$", re.MULTILINE)
 LINK = re.compile(r"\[([^\]]*)\]\([^)]*\)")
 

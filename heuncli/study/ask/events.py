@@ -1,8 +1,9 @@
 """The events of a motion: when conditions change, those in time and coordinates and those on numbers of the results.
 
-The first are met by the kernel (motion/integration/check/changes.py). The others are searched for after the run: a number of
-the results is taken against its limit, a vector by its magnitude, a run of cuts over its whole stretch. A motion that
-ends where such a number passes its limit is solved twice: as a whole, or as far as it goes, and up to there.
+The first are met by the kernel (motion/integration/check/changes.py). The others are searched for after the run: a
+number of the results is taken against its limit, a vector by its magnitude, a run of cuts over its whole stretch. A
+motion that ends where such a number passes its limit is solved twice: as a whole, or as far as it goes, and up to
+there.
 """
 
 from __future__ import annotations

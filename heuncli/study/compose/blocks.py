@@ -3,10 +3,11 @@
 Each block is what `Results` holds under its name: arrays over the instants, SI units.
 
 The way of a joint's reaction, a type each: the kernel's answers (`Recovered`) are summed up to `JointLoads`
-(loads/kinetostatics/reactions.py), split where redundancy asks for it (loads/redundancy/resolve.py), and become a `JointBlock`
-here, with shares by cause, turned into the axes asked for, and open where no law decides. JSON is written of that block
-(output/tables/export.py). For CSV and tables it becomes a `Series` (study/quantities/series.py), for tables a `NumberRow` a component
-(output/tables/table_blocks.py), whose text is a cell of a `TextTable` (output/tables/text_table.py).
+(loads/kinetostatics/reactions.py), split where redundancy asks for it (loads/redundancy/resolve.py), and become a
+`JointBlock` here, with shares by cause, turned into the axes asked for, and open where no law decides. JSON is written
+of that block (output/tables/export.py). For CSV and tables it becomes a `Series` (study/quantities/series.py), for
+tables a `NumberRow` a component (output/tables/table_blocks.py), whose text is a cell of a `TextTable`
+(output/tables/text_table.py).
 """
 
 from __future__ import annotations

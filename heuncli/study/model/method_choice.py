@@ -1,8 +1,8 @@
 """Which method `auto` begins with, and why, by what can be seen of the scene and of the tolerance beforehand.
 
-Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). What turns out
-to be stiff on the way, or cut by events at nearly every step, is begun anew (motion/integration/run/stiffness.py,
-motion/integration/run/event_frequency.py).
+Driven motions that leave no freedom are followed and not integrated (motion/integration/determined_motion.py). What
+turns out to be stiff on the way, or cut by events at nearly every step, is begun anew
+(motion/integration/run/stiffness.py, motion/integration/run/event_frequency.py).
 """
 
 from __future__ import annotations

@@ -6,8 +6,7 @@ import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from heuncli.app.cli.entry import UsageError
-from heuncli.base.errors import OutputError, Problem
+from heuncli.base.errors import OutputError, Problem, UsageError
 
 NOT_A_STORE = "not-a-store"
 OTHER = "name another file: it is made where there is none"

@@ -6,8 +6,7 @@ import sqlite3
 import time
 
 from heuncli.analyses.sweep_store.store.errors import NOT_A_STORE, OTHER
-from heuncli.app.cli.entry import UsageError
-from heuncli.base.errors import Problem
+from heuncli.base.errors import Problem, UsageError
 from heuncli.version import VERSION
 
 APPLICATION = 0x6865756E  # "heun": by which SQLite's header names the program that a file belongs to

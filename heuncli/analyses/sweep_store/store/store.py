@@ -5,8 +5,9 @@
     variants  a row a variant:  sweep, number, key, given (JSON: its values); code, reason: of what may be tried again
     answers   a row a key:      key, measures (JSON: value, error, instant, word), code, reason, warnings (JSON)
 
-An answer stands under its key (analyses/variants/keys.py), and is there for every sweep that has a variant of that key. What
-another attempt may answer otherwise (a time limit, memory, a process that died) is no answer: it stands by its variant.
+An answer stands under its key (analyses/variants/keys.py), and is there for every sweep that has a variant of that key.
+What another attempt may answer otherwise (a time limit, memory, a process that died) is no answer: it stands by its
+variant.
 
 The journal is a write-ahead log. Every row is a transaction of its own, so that whoever is killed has lost what was
 under way, and two sweeps write by turns; a row that both have is written once. Without a file of the user's the same

@@ -14,7 +14,7 @@ from heuncli.base.errors import Problem
 from heuncli.base.nearest import did_you_mean
 from heuncli.results.results_schema import TREE
 
-FOLDER = Path(__file__).parents[2] / "manual"
+FOLDER = Path(__file__).parents[3] / "manual"
 # in the order in which a reader may want them, the pages of single commands in the order of those
 PAGES = tuple(dict.fromkeys((
     "commands", "format", "howto", "elements", "python", "results", "signs", "open", "stresses", "collectives", "rest",

@@ -15,7 +15,7 @@ from heuncli.base.errors import OutputError, Problem
 from heuncli.base.foreign_text import shown
 from heuncli.base.nearest import did_you_mean
 
-FOLDER = Path(__file__).parents[2] / "starters"
+FOLDER = Path(__file__).parents[3] / "starters"
 STANDARD_OUTPUT = "-"
 SCHEMA = """\
 # yaml-language-server: $schema=heun.schema.json

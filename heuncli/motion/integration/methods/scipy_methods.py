@@ -1,4 +1,5 @@
-"""SciPy's stiff and switching integrators, as independent checks (motion/integration/run/scipy_loop.py); their orders vary.
+"""SciPy's stiff and switching integrators, as independent checks (motion/integration/run/scipy_loop.py); their orders
+vary.
 
 They see of loads what their stages see, and pass over a pulse between two of them; a finer run of the same may, too. So
 the check run is the kernel's, which bounds what loads do within a step.

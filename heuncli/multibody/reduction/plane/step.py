@@ -1,4 +1,5 @@
-"""The plane that a scene stays in: it moves as the flat scene in that plane does (multibody/reduction/plane/mechanism.py).
+"""The plane that a scene stays in: it moves as the flat scene in that plane does
+(multibody/reduction/plane/mechanism.py).
 
 Either no joint leaves a body another motion than turns about the normal and shifts across it, or what could leave the
 plane does not, for the scene is its own mirror image in it (multibody/reduction/plane/departures.py).

@@ -15,6 +15,7 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
+import heuncli
 from heuncli.analyses.variants.asking import Answer, Asker, Recipe
 from heuncli.app.commands.sweep.workers import answer_of
 from heuncli.base.named_tuples import NamedTuple
@@ -23,7 +24,7 @@ from heuncli.scene.file_format.named_files import FileNotKept
 from heuncli.version import VERSION
 
 Variant = tuple[int, Mapping[str, str]]  # its number in the plan, and its values in the form of `--set`
-PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))  # noqa: PTH100, PTH120
+PACKAGE = os.path.dirname(os.path.abspath(heuncli.__file__))  # noqa: PTH100, PTH120
 _AT_WORK = threading.Lock()
 
 
