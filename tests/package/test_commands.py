@@ -42,7 +42,7 @@ print(*(name for name in sys.modules if name.startswith("heuncli.app.commands.")
 
 
 def test_every_folder_has_its_row_and_every_row_its_folder_and_its_page() -> None:
-    folders = sorted(path.parent.name for path in (PACKAGE / "commands").glob("*/__init__.py"))
+    folders = sorted(path.parent.name for path in (PACKAGE / "app" / "commands").glob("*/__init__.py"))
     assert sorted(command.folder or command.name for command in COMMANDS) == folders
     assert all((PACKAGE / "manual" / f"{command.page}.md").exists() for command in COMMANDS)
     assert all(command.request.__doc__ and fields_of(command.request) for command in COMMANDS)
@@ -60,7 +60,7 @@ def loaded(*words: str) -> set[str]:
 
 def folders_of(modules: set[str]) -> Iterator[str]:
     """Whose they are."""
-    return (name.split(".")[2] for name in modules)
+    return (name.split(".")[3] for name in modules)
 
 
 @pytest.mark.heavy

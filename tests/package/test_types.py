@@ -10,7 +10,10 @@ import pytest
 import heuncli
 
 ROOT = Path(heuncli.__file__).parent
-TYPED = ("mechanism", "assembly", "reduction", "tree", "kinetostatics", "redundancy", "rest", "shapes")
+TYPED = (
+    "multibody/mechanism", "multibody/assembly", "multibody/reduction", "multibody/tree", "loads/kinetostatics",
+    "loads/redundancy", "loads/equilibrium", "scene/shapes",
+)  # fmt: skip
 TABLES = "tables.py"  # whose rows are of the structs of the kernel, of any type
 
 
