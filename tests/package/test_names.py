@@ -49,4 +49,6 @@ def test_what_two_classes_share_is_a_name_of_the_kernel() -> None:
 
 
 def test_the_steps_of_reduction_stand_where_they_are_looked_for() -> None:
-    assert [name for name, _ in STEPS if not (ROOT / "multibody" / "reduction" / f"{name.replace('.', '/')}.py").exists()] == []
+    assert [
+        name for name, _ in STEPS if not (ROOT / "multibody" / "reduction" / f"{name.replace('.', '/')}.py").exists()
+    ] == []

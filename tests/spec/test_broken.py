@@ -66,7 +66,11 @@ def is_violation(node: ast.expr) -> bool:
 
 
 def test_every_code_has_its_file() -> None:
-    read = (path for room in ("file_format", "expressions", "meshes") for path in (ROOT / "heuncli" / "scene" / room).rglob("*.py"))
+    read = (
+        path
+        for room in ("file_format", "expressions", "meshes")
+        for path in (ROOT / "heuncli" / "scene" / room).rglob("*.py")
+    )
     codes = {code for path in read for code in codes_in(path)}
     assert {"unknown-joint-type", "missing-key", "not-yet", "alias", "first-axis"} <= codes
     assert codes - {path.stem for path in FILES} == set(WITHOUT_A_FILE)
